@@ -305,8 +305,8 @@ def cell(entry):
 def page(summary, picture, table):
     """The page as Markdown; picture and table: files beside it."""
     about = summary["reference"]
-    judged = {"outside": f"Reference: {about['source']}.", "finest": f"Reference: {about['source']}. It is no truth from outside.",
-              "extrapolated": f"Reference: {about['source']}. It is no truth from outside.", "none": f"No reference: {about['source']}."}[about["kind"]]
+    judged = {"outside": f"Reference: {about['source']}.", "finest": f"Reference: {about['source']}. It is not an independent reference.",
+              "extrapolated": f"Reference: {about['source']}. It is not an independent reference.", "none": f"No reference: {about['source']}."}[about["kind"]]
     lines = [f"# What accuracy costs: {summary['title']}", "", f"Judged is the {summary['label']} (`{summary['figure']}`).", judged]
     if about.get("uncertainty") and about["kind"] != "outside":
         lines.append(f"It is uncertain by {100 * about['uncertainty'] / abs(about['value']):.1g} %; twice that is the gray band of the picture.")

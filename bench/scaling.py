@@ -286,7 +286,7 @@ def main(arguments):
     for label, of in sizes.items():
         known = ("neighbor lists", "arrays of the package", "rows", OTHERS)
         rows += [(f"bytes of a particle, {part}, {label}", of[part], "B") for part in known]
-        rows += [(f"bytes of a particle, for a while, {label}", of["peak"] - sum(of[part] for part in known), "B"),
+        rows += [(f"bytes of a particle, temporary, {label}", of["peak"] - sum(of[part] for part in known), "B"),
                  (f"restart file, bytes of a particle, {label}", of["restart file"], "B")]
         rows += [(f"{word}, {label}", of[what], "s") for what, word in (("setup", "set-up"), ("write", "write_restart"), ("read", "read_restart"))]
     seconds, ghosts, sent = cubes(m, 1e9, 1e4)

@@ -9,12 +9,13 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from . import launch, log, paths
+from . import dump, launch, log, paths
 from .command import Refusal
 from .sweep import deck_variables
 
 WRITES = ("dump", "restart", "write_data", "write_dump", "write_restart", "write_coeff", "log", "print", "shell")  # commands whose words are no input
 RUN = re.compile(r"^([ \t]*)run[ \t]+(\S+)(?:[^\n]*&[ \t]*\n)*[^\n]*$", re.M)
+BODIES, FEW = "fsi_check.bodies", 6  # a dump of them; how many are listed
 SAMPLE = 40  # steps of each run, of which the estimate is made
 CONDITIONAL_RUN = re.compile(r"""(["'])run[ \t][^"'\n]*(?=\1)""")
 
@@ -70,15 +71,16 @@ def spelled_out(text):
 
 
 def shortened(text, steps=0):
-    """A deck's text in which every run computes so few steps; how long it would have been is printed, and the time step at its end."""
+    """A deck's text in which every run computes so few steps; how long it would have been is printed, and the time step at its end. Without a step
+    bodies are dumped."""
     text = spelled_out(text)
     text = CONDITIONAL_RUN.sub(rf"\1run {steps}", text)
-    after = '\n{0}print "FSI dt $(dt)"' if steps else ""
+    after = '\n{0}print "FSI dt $(dt)"' if steps else "\n{0}write_dump all custom " + BODIES + " id type mol x y z modify time yes thresh mol > 0"
     return RUN.sub(lambda m: f'{m[1]}print "FSI steps {m[2]}"\n{m[1]}run {"0" if m[2] == "0" else steps}' + after.format(m[1]), text)
 
 
-def run(deck, variables, steps=0):
-    """(LAMMPS' exit status, what it printed, its log as read, the log's text) of a deck whose runs have so many steps."""
+def run(deck, variables, steps=0, look=None):
+    """(LAMMPS' exit status, what it printed, its log as read, the log's text) of a deck whose runs have so many steps; look: given its folder."""
     deck, folder = Path(deck).resolve(), Path.cwd()
     if not deck.is_file():
         raise Refusal(f"{deck} is not a file")
@@ -103,6 +105,8 @@ def run(deck, variables, steps=0):
             environment["LAMMPS_POTENTIALS"] = os.environ.get("LAMMPS_POTENTIALS", "")
         done = subprocess.run(command, cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True, errors="replace", check=False)
+        if look:
+            look(place)
         path = place / "log.lammps"
         return done.returncode, done.stdout, *((log.read(path), path.read_text(errors="replace")) if path.exists() else (None, ""))
 
@@ -149,9 +153,21 @@ def cost(deck, variables):
             f"step stay; arrays of {memory:.0f} MB\n")
 
 
+def bodies(folder):
+    """[what each body is made of], of the dump in `folder`: a flap whose length is no whole number of spacings is shorter than its region."""
+    path = folder / BODIES
+    frame = next(iter(dump.frames(path)), None) if path.exists() else None
+    if frame is None or not len(frame):
+        return []
+    found = [f"fsi check: {name}: {number} particles, {' x '.join(f'{s:.3g}' for s in sizes)} spacings of {dump.spacing(frame.select(frame['mol'] == int(name.split()[1]))):.3g}"
+             for name, number, sizes in dump.bodies(frame) if sizes]
+    return found[:FEW] + ([f"fsi check: and {len(found) - FEW} more"] if len(found) > FEW else [])
+
+
 def main(deck, variables):
     """Prints what there is to say; 0 if the deck runs and there is no advice of the package; LAMMPS has warnings that are of no concern here."""
-    status, output, found, _ = run(deck, variables)
+    made_of = []
+    status, output, found, _ = run(deck, variables, look=lambda folder: made_of.extend(bodies(folder)))
     lines = output.splitlines()
     for start, line in enumerate(lines):
         if line.startswith("FSI: "):  # the effects: up to where LAMMPS goes on
@@ -172,6 +188,8 @@ def main(deck, variables):
     if not ran:
         print(f"fsi check: {deck} has no run")
         return 1
+    if made_of:
+        print(*made_of, sep="\n")
     print(cost(deck, variables), end="")
     print(f"fsi check: {ran[0].atoms} particles{length(lines, found)}; "
           + (f"{len(advice)} warning{'s' * (len(advice) > 1)}" if advice else "nothing to warn of")

@@ -4,6 +4,7 @@
     fsi log log.lammps COLUMN ...             columns of the thermo output as CSV
     fsi series FILE [COLUMN ...]              the same of files of fix print (CSV) and fix ave/time
     fsi frequency FILE COLUMN [FROM [TO]]     of a column that swings; mean and amplitude over its last periods
+    fsi mean FILE ... COLUMN [from=T]         of a column that has settled; with dx= of two runs the error of the finer one
     fsi dump particles.dump                   frames, particles, columns and their ranges
     fsi vtk particles.dump [FOLDER]           for ParaView
     fsi animate particles.dump [FILE.mp4]     by ffmpeg
@@ -20,8 +21,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import animate, check, dump, fill, log, plot, report, series, vtk
-from .command import Refusal, whole
+from . import animate, check, dump, fill, log, plot, precision, report, series, vtk
+from .command import Refusal, number, whole
 from .progress import Progress
 
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY, plot.GREEN, plot.RED)
@@ -109,6 +110,40 @@ def show_frequency(files, options):
         print(f"  not one swing: {rate:.4g} of these periods is not the peak of the spectrum over all of the time; look at plot= of fsi series, or begin later")
 
 
+def show_mean(files, options):
+    """fsi mean FILE [FILE ...] COLUMN [from=T] [dx=A,B,...]
+
+    Mean of a column over the time from T on (default: the last third), its standard error by means of eight blocks, and the change
+    from the first half of that time to the second, which tells whether it is steady. With the spacing of each file: the limit that the
+    two finest runs tend to if errors are of first and of second order, and so the error of the finest run.
+    """
+    *paths, name = files
+    if not paths:
+        raise ValueError("mean takes files and a column")
+    spacings = [number("dx", word) for word in options["dx"].split(",")] if "dx" in options else []
+    if spacings and (len(spacings) != len(paths) or len(set(spacings)) != len(paths) or min(spacings) <= 0.0):
+        raise ValueError(f"dx= takes a different spacing > 0 for each of the {len(paths)} files")
+    means = []
+    for path in paths:
+        table = series.read_any(path).columns
+        time = next(iter(table.values()))
+        column = _columns(table, [name], path)[name]
+        start = number("from", options["from"]) if "from" in options else time[-1] - (time[-1] - time[0]) / 3.0
+        late = time >= start
+        if late.sum() < 16:
+            raise ValueError(f"{path} has {late.sum()} rows from {start:g} on")
+        mean, error, change = series.steady(time[late], column[late])
+        means.append(mean)
+        print(f"{path}: {name} = {mean:.4g} +- {error:.1g} from {start:.4g} to {time[-1]:.4g}; change {change:+.1g} between the halves"
+              + ("" if abs(change) <= max(0.01 * abs(mean), 3.0 * error) else ": not steady, begin later or run longer"))
+    if len(spacings) > 1:
+        finest = sorted(zip(spacings, means))[:2]
+        first, second = precision.between(*zip(*finest))
+        value = finest[0][1]
+        print(f"limit {second:.4g} to {first:.4g} (errors of second to first order in dx): the run with dx = {finest[0][0]:g} is off by "
+              f"{value - second:+.2g} to {value - first:+.2g}" + (f", {100 * (value / second - 1):+.1f} to {100 * (value / first - 1):+.1f} %" if first and second else ""))
+
+
 def show_dump(files, options):
     """fsi dump DUMP [plot=FILE.png] [view=...] [color=COLUMN] [types=1,2] [frames=6]
 
@@ -184,6 +219,7 @@ COMMANDS = {
     "log": (show_log, 1, 99, {"plot"}),
     "series": (show_series, 1, 99, {"plot"}),
     "frequency": (show_frequency, 1, 4, {"periods", "harmonics"}),
+    "mean": (show_mean, 2, 99, {"from", "dx"}),
     "dump": (show_dump, 1, 99, {"plot", "frames", *animate.OPTIONS}),
     "vtk": (make_vtk, 1, 2, set()),
     "animate": (make_animation, 1, 2, {"rate", *animate.OPTIONS}),

@@ -25,6 +25,14 @@ def whole(name, value):
     return int(value)
 
 
+def number(name, value):
+    """An option's value as a number."""
+    try:
+        return float(value)
+    except ValueError:
+        raise Refusal(f"{name}={value}: a number is needed") from None
+
+
 def start(name, main):
     """Ends the process with the status of main(arguments); a refusal is told in one line."""
     try:

@@ -50,6 +50,12 @@ def extrapolate(h, value):
     return (limit, power, uncertainty) if uncertainty <= 2.0 * abs(steps[1]) else None
 
 
+def between(h, value):
+    """(limit by first order, limit by second order) of two values at two spacings: what a finer run would tend to."""
+    (coarse, a), (fine, b) = sorted(zip(h, value), reverse=True)
+    return tuple(b + (b - a) / ((coarse / fine)**order - 1.0) for order in (1, 2))
+
+
 def _fit(h, value):
     best = None
     for power in np.linspace(0.3, 6.0, 571):

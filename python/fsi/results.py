@@ -241,7 +241,7 @@ def rule(found):
     shown = [name for name, rows in first.items() if any((of := name in scenes and main_of(row, scenes[name])) and of[0]["reference"] for row in rows)]
     every = [f for entry in scenes.values() for f in judged(entry)]
     return [f"The table has the {len(shown)} of {len(paths.examples())} scenes in which a fluid moves an elastic body and the main quantity has a reference.",
-            "*Worst other* is the further judged figure with the largest error. Times are those of the main run on one core.",
+            "*Worst other* is the further figure with the largest error, among those with a target if there are any. Times are those of the main run on one core.",
             f"Over all scenes {share(outside(every))} judged figures with a reference from outside are met: [results](doc/results/README.md)."]
 
 

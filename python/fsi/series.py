@@ -160,6 +160,15 @@ def still_moving(time, values):
     return float(share) if farthest > late[0] and share > AT_REST else None
 
 
+def steady(time, values, blocks=8):
+    """(mean over time, its standard error by means of blocks, change from the first half to the second) of a column at uneven times."""
+    edges = np.linspace(time[0], time[-1], blocks + 1)
+    whole = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))])
+    means = np.diff(np.interp(edges, time, whole)) / np.diff(edges)
+    half = blocks // 2
+    return float(means.mean()), float(means.std(ddof=1) / np.sqrt(blocks)), float(means[half:].mean() - means[:half].mean())
+
+
 def read_ave(path):
     """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps, rows)."""
     titles, data = [], []

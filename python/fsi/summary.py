@@ -145,7 +145,7 @@ def bound(figure):
     """A figure's target as text; empty if it has none."""
     if figure["target"] is None:
         return ""
-    return f"{100 * figure['target']:g} %" if figure["reference"] else f"{figure['target']:.4g} {figure['unit']}".strip()
+    return f"{100 * figure['target']:.3g} %" if figure["reference"] else f"{figure['target']:.4g} {figure['unit']}".strip()
 
 
 def _finite(value):

@@ -639,6 +639,54 @@ static void shallow(const Census &c)
   }
 }
 
+// A lattice of fluid ends half a spacing from a mirror wall, and closes around the periodic box: if
+// not, their distance is no whole number of spacings, and what is missing expands.
+static void ends(const Census &c)
+{
+  static constexpr double OFF = 0.15, CLOSE = 0.4, FEW = 5.0;    // spacings; particles of a row
+  const auto &walls = c.walls.wall;
+  const size_t faces = walls.size() + 2 * c.disc.dim;
+  std::vector<double> here(2 * faces), row(2 * faces);    // how many are next to each; distances
+  for (int i = 0; i < c.atom->nlocal; i++) {
+    if (!c.fluid(i)) continue;
+    const double *const x = c.atom->x[i];
+    const auto add = [&](size_t face, double apart) {
+      if (apart < 0.0 || apart > 1.0) return;
+      here[2 * face]++;
+      here[2 * face + 1] += apart;
+    };
+    for (size_t k = 0; k < walls.size(); k++)
+      if (walls[k].spans(x, 0.0)) add(k, walls[k].distance(x) / c.dx(i));
+    for (int d = 0; d < c.disc.dim; d++) {
+      if (!c.domain->periodicity[d]) continue;
+      add(walls.size() + 2 * d, (x[d] - c.domain->boxlo[d]) / c.dx(i));
+      add(walls.size() + 2 * d + 1, (c.domain->boxhi[d] - x[d]) / c.dx(i));
+    }
+  }
+  MPI_Allreduce(here.data(), row.data(), (int) row.size(), MPI_DOUBLE, MPI_SUM, c.world);
+  const auto is_row = [&](size_t face) {
+    return row[2 * face] >= FEW;
+  };
+  const auto mean = [&](size_t face) {
+    return row[2 * face + 1] / row[2 * face];
+  };
+  for (size_t k = 0; k < walls.size(); k++)
+    if (is_row(k) && std::fabs(mean(k) - 0.5) > OFF)
+      c.warn(
+          "the first row of fluid is {:.2g} spacings from the mirror wall at {} = {:g}, not half "
+          "of one: is the distance of the walls a whole number of spacings?",
+          mean(k), "xyz"[walls[k].axis], walls[k].position);
+  for (int d = 0; d < c.disc.dim; d++) {
+    const size_t lo = walls.size() + 2 * d, hi = lo + 1;
+    if (!is_row(lo) || !is_row(hi)) continue;
+    const double apart = mean(lo) + mean(hi);
+    if (apart >= CLOSE && std::fabs(apart - 1.0) > OFF)    // closer ones: spacing()
+      c.warn("the fluid's rows are {:.2g} spacings apart around the periodic box: make it a whole "
+             "number of spacings long in {}",
+             apart, "xyz"[d]);
+  }
+}
+
 // Where runs begin to fail (doc/notes/fluid.md, Courant number), over the limit that fix fsi/dt
 // keeps
 static void time_step(const Census &c)
@@ -724,6 +772,7 @@ static void advise(const Census &c)
     if (c.at_first()) {
       seen_through(c);
       shallow(c);
+      ends(c);
     }
   }
   time_step(c);

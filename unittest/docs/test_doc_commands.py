@@ -111,6 +111,7 @@ def home(tmp_path_factory):
         fewer_frames(folder / "results" / name / "particles.dump")
     beam = folder / "results/beam"
     shutil.copy(beam / "log.lammps", beam / "log.fine")
+    shutil.copy(beam / "tip.csv", beam / "coarse.csv")
     (beam / "outline.csv").write_text("0,0\n0.2,0\n0.2,0.1\n0,0.1\n")
     (beam / "probe.ave").write_text("# Time-averaged data for fix 1\n# TimeStep c_probe\n0 1.5\n100 2.5\n")
     tree = folder / "LAMMPS"
@@ -183,6 +184,10 @@ class Reader:
             return self.execute(command)
         crowded = "OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe"  # where there is one core
         return self.execute(f"{crowded} {command} -skiprun -log none")
+
+    def mv(self, _, words):
+        """What a run left gets another name: `home` has it there already."""
+        assert (self.home / "results/beam" / words[1]).exists()
 
     def lmp(self, _, words):
         """A scene's deck, in its folder: here in a copy, where what it writes is no litter."""

@@ -106,9 +106,9 @@ WATER = ("fluid", "shifting"), ("fluid", "shifting, every 4 steps")
 QUOTED = [
     *(("doc/choosing.md", words, partial(timed, *of)) for words, *of in (
         ("through the thickness: {} % in {} s; 5: {} % in {} s; 10: {} % in {} s", "oscillating_plate", TL, 3, 5, 10),
-        ("deflection, 3 particles: {} % in {} s, where the error changes its sign; 5: {} % in {} s; 6: {} % in {} s", "hydrostatic_plate", "quadratic$", 3, 5, 6),
+        ("deflection, 3 particles: {} % in {} s; 5: {} % in {} s, where the error changes its sign; 6: {} % in {} s", "hydrostatic_plate", "quadratic$", 3, 5, 6),
         ("peak, 2 particles: {} % in {} s; 3: {} % in {} s; 4: {} % in {} s", "elastic_gate", "TL$", 0.0025, 0.00166666667, 0.00125),
-        ("peak, 3 particles: {} % in {} s; 4: {} % in {} s", "elastic_gate", "TL, water twice", 0.00166666667, 0.00125),
+        ("peak, 3 particles: {} % in {} s, where the error changes its sign; 4: {} % in {} s", "elastic_gate", "TL, water twice", 0.00166666667, 0.00125),
         ("along a side: {} % in {} s; 40: {} % in {} s", "taylor_green", "shifting, quintic", 0.04, 0.025),
         ("period, 10 rows deep: {} % in {} s; 20: {} % in {} s", "standing_wave", "quintic 1.0", 0.05, 0.025),
         ("pressure, 10 rows deep: {} % in {} s; 20: {} % in {} s", "still_water", "waves", 0.05, 0.025),

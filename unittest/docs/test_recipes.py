@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scenes import run
 
-from fsi import dump, fill, launch, log, paths
+from fsi import check, dump, fill, launch, log, paths
 
 PAGES = paths.ROOT / "doc/src"
 RECIPES = PAGES / "recipes"
@@ -53,19 +53,29 @@ def test_page_of_a_recipe(page):
 @pytest.mark.parametrize("deck", sorted(path.name for path in RECIPES.glob("in.*")))
 def test_deck_is_short(deck):
     """As those of the scenes (test_plain_decks.py)"""
-    assert len([line for line in (RECIPES / deck).read_text().splitlines() if line.strip()]) <= 45 + (deck == "in.flap_stream")
+    assert len([line for line in (RECIPES / deck).read_text().splitlines() if line.strip()]) <= 45 + 5 * (deck == "in.flap_stream")
 
 
 def test_flap_in_a_stream(tmp_path):
     """The tutorial's deck as it is, until the levels are there and the stream sets in: no warning, and the flap begins to bend."""
     (tmp_path / "short").mkdir()
     text = (RECIPES / "in.flap_stream").read_text()
-    assert text.count("fsi/run       1.5") == 1
-    run(tmp_path / "short", text.replace("fsi/run       1.5", "fsi/run 0.25"))
+    end = "fsi/run       $(30*v_L/v_U)"
+    assert text.count(end) == 1
+    run(tmp_path / "short", text.replace(end, "fsi/run 0.25"))
     found = log.read(tmp_path / "short/log.lammps")
     last = found.finished[-1].thermo
     assert not found.warnings and last["Time"][-1] == pytest.approx(0.25) and last["Atoms"][-1] > 1800    # 1188 are made
     assert 1e-3 < float((tmp_path / "short/tip.csv").read_text().splitlines()[-1].split(",")[1]) < 1e-2 and 10 < last["c_load[1]"][-1] < 100
+
+
+def test_flap_of_another_size():
+    """Another channel, flap and velocity by the deck's variables alone; then a channel 22.5 spacings high."""
+    mine = {"H": "0.06", "L": "0.02", "T": "0.002", "U": "0.3"}
+    for dx, warnings in (("0.002", 0), ("0.0026666667", 1)):
+        status, output, *_ = check.run(RECIPES / "in.flap_stream", {**mine, "dx": dx})
+        print(output)
+        assert status == 0 and output.count("WARNING: Fix fsi") == warnings
 
 
 @pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.mooring", "in.turned", "in.tear", "in.inflow", "in.fine", "in.viscoelastic", "in.yield"])

@@ -67,6 +67,10 @@ CASES = {
     "around": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0.0045 0.0755"), ("water block 0 0.05", "water block INF INF"),
                 ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"), ("create_atoms 2 region plate", "")], None,
                r"atoms 1 and 8 are 0.1 spacings apart around the periodic box: make it a whole number of spacings long in x"),
+    "row off": ([("xlo 0", "xlo -0.004")], None, r"first row of fluid is 0.9 spacings from the mirror wall at x = -0.004, not half of one"),
+    "gap around": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0 0.0732"), ("water block 0 0.05", "water block INF INF"),
+                    ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"), ("create_atoms 2 region plate", "")], None,
+                   r"rows are 1.3 spacings apart around the periodic box: make it a whole number of spacings long in x"),
     "idle": ([("fix sph all", "group moving type 2\ngroup some id 1:20\ngroup moving union moving some\nfix sph moving")], None,
              r"20 fluid particles, the first of them atom 21, are not in group moving of fix sph"),
     # alpha h c/16 = 2.9e-3 against 1e-3/1000*1000
@@ -158,7 +162,7 @@ def test_sound_deck_is_not_criticized(tmp_path):
 
 
 ON_TWO_RANKS = ("sound", "spacing", "overlap", "idle", "long fluid", "contact", "held", "weightless body", "nothing acts",
-                "cut by a mirror", "thin")  # what is summed over ranks
+                "cut by a mirror", "thin", "row off", "gap around")  # what is summed over ranks
 
 
 @pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])

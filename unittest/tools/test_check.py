@@ -81,6 +81,21 @@ def test_warnings_of_lammps_are_told_but_are_no_advice(folder, capsys):
     assert status == 0 and "WARNING: New thermo_style" in text and "nothing to warn of (and 1 of LAMMPS' own)" in text
 
 
+def test_bodies_are_measured(folder, capsys):
+    """A region 2.6 spacings thick has 3 columns or 2: seen before the run. Of many bodies the first ones."""
+    plate = "fsi/material plate solid rho 1000 young 2e6 poisson 0.4\npair_style hybrid fsi/fluid sound 20 fsi/solid/tl\n"
+    plate += "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate"
+    deck = DECK.replace("create_box 1", "create_box 2").replace("pair_style fsi/fluid sound 20\npair_coeff * * materials.fsi water", plate)
+    (folder / "in.deck").write_text(deck)
+    places = "region plate{0} block 0.15 0.176 {1} {2} INF INF units box\ncreate_atoms 2 region plate{0}\ngroup plate{0} region plate{0}\nset group plate{0} mol {0}\n"
+    (folder / "bodies.in").write_text("region water block 0 0.1 0 0.1 INF INF units box\ncreate_atoms 1 region water\n" + places.format(1, 0.05, 0.15))
+    _, text = says(capsys)
+    assert "fsi check: body 1: 30 particles, 3 x 10 spacings of 0.01\n" in text and not list(folder.glob("fsi_check*"))
+    (folder / "bodies.in").write_text("".join(places.format(k, 0.04 * k - 0.04, 0.04 * k - 0.01) for k in range(1, 8)))
+    _, text = says(capsys)
+    assert text.count("spacings of 0.01") == 6 and "fsi check: and 1 more\n" in text
+
+
 def test_no_step_is_computed(folder):
     status, output, *_ = check.run("in.deck", {})
     assert status == 0 and "steps done: 0" in output

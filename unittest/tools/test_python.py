@@ -375,6 +375,30 @@ def test_report_of_a_log_with_another_name(tmp_path):
         cli.main(["report", str(tmp_path), "log=log.none"])
 
 
+def test_mean_of_a_steady_column(tmp_path, capsys):
+    """Uneven steps, noise that has the mean 0; a column that still grows is said to. Two spacings with errors of first and of second order."""
+    rng = np.random.default_rng(5)
+    t = np.sort(np.concatenate([[0.0, 2.0], rng.uniform(0.0, 1.0, 3000), rng.uniform(1.0, 2.0, 300)]))
+    for name, value in (("coarse", 5.0 - 2.0 * 0.2), ("fine", 5.0 - 2.0 * 0.1)):
+        y = value + 0.01 * np.sin(200.0 * t) - 3.0 * np.exp(-t / 0.1)
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([t, y, t]), delimiter=",", header="time,tip,grows", comments="")
+        mean, error, change = series.steady(t[t >= 1.0], y[t >= 1.0])
+        assert abs(mean - value) < 1e-3 and error < 1e-3 and abs(change) < 2e-3
+    files = [str(tmp_path / f"{name}.csv") for name in ("fine", "coarse")]
+    cli.main(["mean", *files, "tip", "from=1", "dx=0.1,0.2"])
+    said = capsys.readouterr().out
+    assert "tip = 4.8 +-" in said and "tip = 4.6 +-" in said and "not steady" not in said
+    low, high = map(float, re.search(r"limit (\S+) to (\S+) ", said).groups())
+    assert low == pytest.approx(4.8 + 0.2 / 3.0, abs=2e-3) and high == pytest.approx(5.0, abs=2e-3)
+    assert re.search(r"dx = 0.1 is off by -0.067 to -0.2, -1.4 to -4.0 %", said)
+    cli.main(["mean", files[0], "grows"])
+    assert "not steady" in capsys.readouterr().out
+    for words in (["tip"], [files[0], "tip", "dx=0"], [*files, "tip", "dx=0.1"], [*files, "tip", "dx=0.1,0.1"], [files[0], "tip", "from=x"], [files[0], "tip", "from=1.9999"],
+                  [files[0], "other"]):
+        with pytest.raises(SystemExit):
+            cli.main(["mean", *words])
+
+
 def test_frequency(tmp_path, capsys):
     """Four periods: the window's bias is below 1 %; a drift and a smaller, faster swing change nothing more."""
     t = np.arange(0.0, 2.0, 0.01)**1.01  # unevenly spaced
