@@ -12,7 +12,9 @@ import ranks  # noqa: E402
 
 # 24 steps of round-off, 1e-16 of a sum, grown by sound and, in the plate, by a stiffness of 1e4 weights; a missing ghost shows at 1e-4
 ROUND = 1e-9
-PART = 0.05  # particles are moved by up to half a spacing of a cell: a rank's ghosts differ by that much from its neighbor's
+PART = 0.05  # levels make particles in some cells earlier than in others
+# what does grow: each floating block adds force and torque of a step, twice; on 9 x 3 ranks an end meets eight others, on 4 x 2 five
+GROWS = {("floating blocks", "reduced"): (27 - 8) * 2 * 6 * 8, ("open ends", "messages"): 2 * (8 - 5)}
 
 
 @pytest.mark.parametrize("kind", ranks.KINDS)
@@ -24,7 +26,7 @@ def test_scene_is_that_of_one_rank(kind):
 def test_a_rank_of_27_sends_what_one_of_8_does(kind):
     few, many = (measure.messages([ranks.deck(kind, n)], n, max)[0] for n in (8, 27))
     for name in ("ghosts", "messages", "bytes", "collectives", "reduced", "memory"):
-        assert many[name] <= (1 + PART) * few[name], name
+        assert many[name] <= (1 + PART) * few[name] + GROWS.get((kind, name), 0), name
     assert few["messages"] > 4 and few["bytes"] > 1e4
 
 
