@@ -14,6 +14,7 @@ import ranks  # noqa: E402
 ROUND = 1e-9
 PART = 0.05  # levels make particles in some cells earlier than in others
 # what does grow: each floating block adds force and torque of a step, twice; on 9 x 3 ranks an end meets eight others, on 4 x 2 five
+MPI = 2**18  # bytes that Open MPI keeps for another rank
 GROWS = {("floating blocks", "reduced"): (27 - 8) * 2 * 6 * 8, ("open ends", "messages"): 2 * (8 - 5)}
 
 
@@ -26,7 +27,7 @@ def test_scene_is_that_of_one_rank(kind):
 def test_a_rank_of_27_sends_what_one_of_8_does(kind):
     few, many = (measure.messages([ranks.deck(kind, n)], n, max)[0] for n in (8, 27))
     for name in ("ghosts", "messages", "bytes", "collectives", "reduced", "memory"):
-        assert many[name] <= (1 + PART) * few[name] + GROWS.get((kind, name), 0), name
+        assert many[name] <= (1 + PART) * few[name] + GROWS.get((kind, name), MPI * (27 - 8) * (name == "memory")), name
     assert few["messages"] > 4 and few["bytes"] > 1e4
 
 
