@@ -42,7 +42,7 @@ namespace FSI {
 
 // The centre of the package: integrates in time (position Verlet) and calls what takes part in a
 // step, which brings density and stress of every particle to the middle of the step before forces
-// are computed. Has the objects that those share.
+// are computed. It has the objects that those share.
 
 class FixFSI : public FSI::FixFields {
   struct Members;

@@ -13,7 +13,7 @@
 
 // What those that take part in a step share: what is the same in a whole run, what a step has, and
 // the balance of energy. Fix fsi has these objects; a style takes those that it needs once, when a
-// run begins, const where it only reads, and calls nothing of the fix.
+// run begins, const where it only reads, and keeps no pointer to the fix.
 
 #ifndef LMP_FSI_HUB_H
 #define LMP_FSI_HUB_H
