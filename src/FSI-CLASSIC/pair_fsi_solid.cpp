@@ -157,7 +157,7 @@ int PairFSISolid::ngrad() const
   return n == 0 ? dim * dim : dim * n + 2 * packed_size(n);
 }
 
-void PairFSISolid::set_fields(Scene &)
+void PairFSISolid::set_fields(Discretization &)
 {
   fields.set("velocity gradient", Fields::STEP, true, grad, fours(ngrad()));
 }
@@ -374,7 +374,7 @@ bool PairFSISolid::add_rates(bool advance)
   fields.grow();
   any_gradient = advance || terms();
   if (!any_gradient) return false;
-  const Phase phase(fix_fsi->profile, Profile::STRESS);
+  const Phase phase(step->profile, Profile::STRESS);
   const size_t nall = atom->nlocal + atom->nghost;
   if (nall) std::fill_n(grad[0], nall * fours(ngrad()), 0.0);
   velocity_gradient(advance ? update->dt : 0.0);
@@ -384,7 +384,7 @@ bool PairFSISolid::add_rates(bool advance)
 void PairFSISolid::advance(bool advance)
 {
   if (!any_gradient) return;
-  const Phase phase(fix_fsi->profile, Profile::STRESS);
+  const Phase phase(step->profile, Profile::STRESS);
   const int dim = disc->dim;
   if (terms() == 0)
     dim == 2 ? advance_stress<2, 0>(advance) : advance_stress<3, 0>(advance);
@@ -504,7 +504,7 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
 void PairFSISolid::advance_hourglass(double dt)
 {
   const int dim = disc->dim;
-  forward_comm(fix_fsi->profile, comm, this);
+  forward_comm(step->profile, comm, this);
   hourglass_rate.assign((size_t) images.end() * row_of_forces(dim), 0.0);
   if (!own.rows.empty() || images.any())
     with_loops([&](auto packed, const auto &kernel, auto terms) {
@@ -517,7 +517,7 @@ void PairFSISolid::advance_hourglass(double dt)
             rate);
       });
     });
-  if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
+  if (force->newton_pair) reverse_comm(step->profile, comm, this);
   dim == 2 ? rotate_hourglass<2>(dt) : rotate_hourglass<3>(dt);
 }
 
@@ -602,8 +602,8 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
-  FixFSI::check_pre_no(lmp, fix_fsi);
-  const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
+  FixFSI::check_pre_no(lmp, disc);
+  const Phase phase(step->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
   with_loops([&](auto packed, const auto &kernel, auto terms) {
@@ -641,7 +641,7 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
     record[At::RHO] = atom->rho[i];
     record[At::SOUND] = s.c;
     auto stress = Sym<D>::load(fix_stress->stress[i]);
-    stress += Sym<D>::identity(-fix_fsi->pressure(i));
+    stress += Sym<D>::identity(-pressure_of(i, atom, *disc, *step));
     stress *= vol;
     if (TERMS) {
       stress.store(record + At::STRESS);

@@ -55,7 +55,7 @@ class PairFSISolid : public PairFSI {
 
   void *extract(const char *, int &) override;    // "hourglass", for fix adapt
   FSI::Facts facts() const override;
-  void set_fields(FSI::Scene &) override;
+  void set_fields(FSI::Discretization &) override;
   void add_messages(FSI::Message &, FSI::Message &) override;
   void begin_state(bool) override;    // with new neighbor lists new rows
   bool add_rates(bool) override;

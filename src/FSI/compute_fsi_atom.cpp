@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "fsi_find.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "fsi_refusals.h"
@@ -35,7 +36,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), tensor(false), nmax(0), fix_fsi(nullptr), shear(nullptr)
+    Compute(lmp, narg, arg), tensor(false), nmax(0), shear(nullptr)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
   static const std::vector<std::string> names = {
@@ -61,7 +62,7 @@ ComputeFSIAtom::~ComputeFSIAtom()
 
 void ComputeFSIAtom::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Compute fsi/atom");
+  FixFSI::find(lmp, "Compute fsi/atom");
   const auto *const stress = FixFSIStress::find(lmp);
   if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
       (!stress || !stress->plastic))
@@ -88,7 +89,9 @@ void ComputeFSIAtom::grow()
 void ComputeFSIAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
-  fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom");
+  const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
   const int n = quantity.size();
   grow();
   const bool sums = std::find(quantity.begin(), quantity.end(), PSI) != quantity.end();
@@ -152,8 +155,8 @@ double ComputeFSIAtom::value(int what, int i, const Properties &of) const
 // is -p - (S_xx + S_yy), of plane stress 0
 void ComputeFSIAtom::find(int i, Properties &of) const
 {
-  const State &state = fix_fsi->state[atom->type[i]];
-  const bool lagrangian = fix_fsi->is_total_lagrangian(i);
+  const State &state = disc->state[atom->type[i]];
+  const bool lagrangian = state.form == TOTAL_LAGRANGIAN;
   of.has_stress = lagrangian || state.form == UPDATED_LAGRANGIAN;
   if (lagrangian) {
     const auto tl = solid_tl->stress(i);
@@ -164,7 +167,7 @@ void ComputeFSIAtom::find(int i, Properties &of) const
     std::copy_n(tl.sigma, 6, of.sigma);
     return;
   }
-  of.p = fix_fsi->pressure(i);
+  of.p = pressure_of(i, atom, *disc, *step);
   of.rho = atom->rho[i];
   of.volume = atom->rmass[i] / of.rho;
   if (state.species == FLUID && shear) {
@@ -175,7 +178,7 @@ void ComputeFSIAtom::find(int i, Properties &of) const
   std::fill_n(of.sigma, 6, 0.0);
   if (of.has_stress) {
     const double *const s = fix_stress->stress[i];
-    const bool flat = fix_fsi->dim == 2;
+    const bool flat = disc->dim == 2;
     std::copy_n(s, flat ? 2 : 6, of.sigma);
     if (flat) {
       of.sigma[2] = fix_stress->plane_stress ? of.p : -(s[0] + s[1]);

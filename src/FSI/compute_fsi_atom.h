@@ -27,7 +27,9 @@ ComputeStyle(fsi/atom,ComputeFSIAtom);
 namespace LAMMPS_NS {
 namespace FSI {
   class Shear;
-}
+  struct Discretization;
+  struct StepState;
+}    // namespace FSI
 
 // Per-particle quantities of fluids and solids: pressure, density, number density, stress.
 
@@ -50,7 +52,8 @@ class ComputeFSIAtom : public Compute {
   bool tensor;    // is one of them of the stress?
   std::vector<double> psi;
   int nmax;
-  class FixFSI *fix_fsi;
+  const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
   class FixFSIStress *fix_stress;    // null: no solid has one
   class PairFSISolidTL *solid_tl;    // null: there is none
 

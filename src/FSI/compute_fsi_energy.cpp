@@ -18,6 +18,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_hub.h"
 #include "fsi_refusals.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
@@ -27,8 +28,7 @@ using namespace FSI;
 
 static constexpr int NHAVE = 4;    // kinetic, gravitational, compressive, shear
 
-ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), fix_fsi(nullptr)
+ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   if (narg != 3) error->all(FLERR, "Compute fsi/energy takes no arguments");
   if (igroup) refuse(error, Refused::ENERGY_GROUP);
@@ -45,7 +45,7 @@ ComputeFSIEnergy::~ComputeFSIEnergy()
 
 void ComputeFSIEnergy::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Compute fsi/energy");
+  FixFSI::find(lmp, "Compute fsi/energy");
 }
 
 const char *ComputeFSIEnergy::name(int k)
@@ -73,9 +73,10 @@ double ComputeFSIEnergy::compute_scalar()
 void ComputeFSIEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
-  fix_fsi = FixFSI::ready(lmp, "Compute fsi/energy");
-  const Discretization &disc = *fix_fsi;
-  const Ledger &ledger = *fix_fsi;
+  const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/energy");
+  const Discretization &disc = fix_fsi->disc;
+  const StepState &step = fix_fsi->step;
+  const Ledger &ledger = fix_fsi->ledger;
   double sum[NHAVE + Ledger::NTERM] = {};    // of this rank
   double **const v = atom->v, **const f = atom->f;
   // in the setup of a run positions and velocities are of one time
@@ -86,20 +87,20 @@ void ComputeFSIEnergy::compute_vector()
     // what a wall gets is in the term of walls; what grains get, in that of coupling
     if (s.species == NONE || s.species == RIGID) continue;
     const double m = atom->rmass[i];
-    const bool tl = fix_fsi->is_total_lagrangian(i);
+    const bool tl = s.form == TOTAL_LAGRANGIAN;
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
-    const double dth = !(atom->mask[i] & fix_fsi->groupbit) ? 0.0
-        : tl                                                ? half / fix_fsi->substeps
-                                                            : half;
-    const auto g = fix_fsi->body_forces.on(i);
+    const double dth = !(atom->mask[i] & disc.mover->groupbit) ? 0.0
+        : tl                                                   ? half / step.substeps
+                                                               : half;
+    const auto g = step.body_forces.on(i);
     for (int d = 0; d < disc.dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;
       sum[0] += 0.5 * m * vmid * vmid;
       sum[1] += m * g[d] * dth * v[i][d];    // back from the end of the step
     }
-    sum[1] += fix_fsi->potential(i);
+    sum[1] += step.body_forces.potential(i);
     if (tl) continue;
-    sum[2] += fix_fsi->stored(i);
+    sum[2] += stored(i, atom, disc);
     if (s.form == UPDATED_LAGRANGIAN) sum[3] += stress->shear_energy(i, s.shear);
   }
   if (const auto *solid_tl = PairFSISolidTL::find(lmp)) sum[3] += solid_tl->strain_energy;

@@ -40,7 +40,6 @@ class ComputeFSIEnergy : public Compute, public FSI::Part {
   static const char *name(int);    // of an entry of the vector
 
  private:
-  class FixFSI *fix_fsi;
 };
 
 }    // namespace LAMMPS_NS

@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_part.h"
 #include "neighbor.h"
@@ -36,7 +37,7 @@ static bool has_period(const Domain *domain, int dim)
 }
 
 ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), sum{}, origin{}, reduced(false), fix_fsi(nullptr)
+    Compute(lmp, narg, arg), sum{}, origin{}, reduced(false)
 {
   FSI::Keywords keywords(lmp, "compute fsi/force");
   keywords.key("split").logical(split, false);
@@ -54,14 +55,14 @@ ComputeFSIForce::~ComputeFSIForce()
 
 void ComputeFSIForce::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Compute fsi/force");
+  disc = &FixFSI::find(lmp, "Compute fsi/force")->disc;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
 }
 
 bool ComputeFSIForce::counts(int i) const
 {
-  const int species = fix_fsi->state[atom->type[i]].species;
+  const int species = disc->state[atom->type[i]].species;
   return (atom->mask[i] & groupbit) && (species == FSI::SOLID || species == FSI::RIGID);
 }
 
@@ -89,7 +90,7 @@ void ComputeFSIForce::add(int i, const double *f, double sign, int where)
   double r[3];
   for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - origin[d];
   FSI::to_nearest_image(*domain, r);
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   for (int d = 0; d < 3; d++) {
     const int a = (d + 1) % 3, b = (d + 2) % 3;
     if (d < dim) sum[where + d] += sign * f[d];
@@ -103,7 +104,7 @@ void ComputeFSIForce::tally(double sign)
   const int nlocal = atom->nlocal, nall = nlocal + (force->newton_pair ? atom->nghost : 0);
   if (sign < 0.0) {
     std::fill_n(sum, (int) NSUM, 0.0);
-    if (update->setupflag || (neighbor->ago == 0 && has_period(domain, fix_fsi->dim))) find_body();
+    if (update->setupflag || (neighbor->ago == 0 && has_period(domain, disc->dim))) find_body();
     reduced = false;
   }
   for (int i = 0; i < nall; i++) {
@@ -123,7 +124,7 @@ void ComputeFSIForce::tally_viscosity(const double *forces, int row)
 void ComputeFSIForce::compute_vector()
 {
   invoked_vector = update->ntimestep;
-  fix_fsi = FixFSI::ready(lmp, "Compute fsi/force");
+  disc = &FixFSI::ready(lmp, "Compute fsi/force")->disc;
   if (reduced) return;
   reduced = true;
   double all[NSUM];

@@ -23,6 +23,9 @@ ComputeStyle(fsi/force,ComputeFSIForce);
 #include "compute.h"
 
 namespace LAMMPS_NS {
+namespace FSI {
+  struct Discretization;
+}
 
 // Force and torque of the fluid on the solid and wall particles of a group: what pair_style
 // fsi/fluid gives them.
@@ -51,7 +54,7 @@ class ComputeFSIForce : public Compute {
   enum { FORCE = 0, TORQUE = 3, VISCOUS = 6, VISCOUS_TORQUE = 9, MOMENT = 12, MASS = 15, NSUM };
   double sum[NSUM], origin[3];
   bool reduced;    // over ranks, since the last forces
-  class FixFSI *fix_fsi;
+  const FSI::Discretization *disc = nullptr;
 
   bool counts(int) const;
   void add(int, const double *f, double sign, int where);

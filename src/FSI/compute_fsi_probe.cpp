@@ -17,6 +17,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_sight.h"
@@ -33,8 +34,7 @@ using namespace FSI;
 static constexpr double MOST = 1.0e7;    // points of one place
 
 ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), fix_fsi(nullptr),
-    disc(nullptr)
+    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1)
 {
   static const std::vector<std::string> names = {"p",  "rho",  "vx",    "vy",
                                                  "vz", "fill", "level", "wet"};
@@ -113,8 +113,7 @@ ComputeFSIProbe::~ComputeFSIProbe()
 
 void ComputeFSIProbe::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Compute fsi/probe");
-  disc = fix_fsi;
+  disc = &FixFSI::find(lmp, "Compute fsi/probe")->disc;
   listed = -1;
   points.clear();
   nsums = places[0].line ? 2 : 1 + quantity.size();
@@ -286,9 +285,10 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
   const auto add_particle = [&](const Place &place, const Particle &p) {
     const int i = p.i, type = atom->type[i];
     const State &state = disc->state[type];
-    const auto &g = fix_fsi->body_forces.of_type[type];
+    const auto &g = step->body_forces.of_type[type];
     const bool fluid = state.species == FLUID;
-    const Source of = {atom->rho[i], fluid ? fix_fsi->pressure(i) : 0.0, state.floor, fluid};
+    const Source of = {atom->rho[i], fluid ? pressure_of(i, atom, *disc, *step) : 0.0, state.floor,
+                       fluid};
     double x[3];
     for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
     const double vol = volume_at(x, i, walls);
@@ -329,8 +329,9 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
 // along lines of V W over fluids and over solids
 void ComputeFSIProbe::sum_up()
 {
-  fix_fsi = FixFSI::ready(lmp, "Compute fsi/probe");
-  disc = fix_fsi;
+  const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/probe");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
   if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
 
   const int npoints = points.size() / 3;
@@ -339,7 +340,7 @@ void ComputeFSIProbe::sum_up()
 
   // walls are known at the middle of the step, where forces are; positions are those of its end
   const Walls walls =
-      fix_fsi->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
+      step->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
   std::vector<double> at(points);
   const std::vector<int> mask = walls_near(walls, at);
 

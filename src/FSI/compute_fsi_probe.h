@@ -28,6 +28,7 @@ ComputeStyle(fsi/probe,ComputeFSIProbe);
 namespace LAMMPS_NS {
 namespace FSI {
   struct Discretization;
+  struct StepState;
   struct Walls;
 }    // namespace FSI
 
@@ -72,8 +73,8 @@ class ComputeFSIProbe : public Compute {
   int nsums;    // per point: fluid, solid; or fluid and one for each quantity
   bigint listed;
 
-  const class FixFSI *fix_fsi;
-  const FSI::Discretization *disc;    // of it
+  const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
 
   int read_place(const std::string &kind, int narg, char **arg);
   void set_grid(Place &, double dx) const;

@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_find.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "memory.h"
@@ -30,7 +31,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), nmax(0), fix_fsi(nullptr)
+    Compute(lmp, narg, arg), nmax(0)
 {
   Keywords keywords(lmp, "compute fsi/surface/atom");
   keywords.key("number/density")
@@ -51,7 +52,7 @@ ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
 
 void ComputeFSISurfaceAtom::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Compute fsi/surface/atom");
+  FixFSI::find(lmp, "Compute fsi/surface/atom");
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
 }
@@ -62,7 +63,8 @@ void ComputeFSISurfaceAtom::init()
 void ComputeFSISurfaceAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
-  fix_fsi = FixFSI::ready(lmp, "Compute fsi/surface/atom");
+  const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/surface/atom");
+  const Discretization &disc = fix_fsi->disc;
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->destroy(vector_atom);
@@ -73,18 +75,17 @@ void ComputeFSISurfaceAtom::compute_peratom()
   double limit;
   if (rule == NUMBER_DENSITY) {
     fix_fsi->number_density.find(sum.data());
-    limit = threshold * fix_fsi->psi_bulk;
+    limit = threshold * disc.psi_bulk;
   } else {
     std::fill(sum.begin(), sum.end(), 0.0);
     first_of(pairs_of<PairFSIFluid>(lmp))->add_position_divergence(sum.data());
-    fix_fsi->add_ghosts(sum.data());
-    limit = threshold * fix_fsi->dim;
+    fix_fsi->ghosts.add(sum.data());
+    limit = threshold * disc.dim;
   }
   const int *const mask = atom->mask, *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++)
     vector_atom[i] =
-        (mask[i] & groupbit) && fix_fsi->state[type[i]].species == FLUID && sum[i] <= limit ? 1.0
-                                                                                            : 0.0;
+        (mask[i] & groupbit) && disc.state[type[i]].species == FLUID && sum[i] <= limit ? 1.0 : 0.0;
 }
 
 double ComputeFSISurfaceAtom::memory_usage()

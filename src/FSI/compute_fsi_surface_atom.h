@@ -43,7 +43,6 @@ class ComputeFSISurfaceAtom : public Compute {
   double threshold;
   int nmax;
   std::vector<double> sum;
-  class FixFSI *fix_fsi;
 };
 
 }    // namespace LAMMPS_NS

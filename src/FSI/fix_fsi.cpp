@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "atom_vec_fsi.h"
+#include "citeme.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -25,6 +26,7 @@
 #include "fsi_find.h"
 #include "fsi_frame.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
@@ -37,17 +39,25 @@
 #include "group.h"
 #include "neighbor.h"
 #include "output.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
-#include <functional>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
+static const char cite_fsi[] =
+    "FSI package: fluid-structure interaction by SPH\n\n"
+    "@Misc{FSI,\n author = {{The authors of the FSI package for LAMMPS}},\n"
+    " title = {FSI package for LAMMPS},\n note = {Version 0.9}\n}\n\n";
+
 struct FixFSI::Members {
+  std::vector<Part *> parts;
+  Discretization disc;
+  StepState step;
+  Ledger ledger;
+  Ghosts ghosts;
   Keywords keywords;
   Clock clock;
   Check check;
@@ -59,23 +69,25 @@ struct FixFSI::Members {
   Others others;
   Frame frame;
 
-  Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
-      keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
-      number_density(lmp, fix, add_ghosts), clamps(lmp, fix),
-      surface_deficit(lmp, fix, number_density, add_ghosts), others(lmp, fix), frame(lmp, fix)
+  Members(LAMMPS *lmp, FixFSI &fix) :
+      disc(&fix, lmp->atom->ntypes), step(lmp), ghosts(lmp, fix, disc.state, step.profile),
+      keywords(lmp, "fix fsi"), clock(lmp), check(lmp, disc, step, parts), changes(lmp),
+      population(lmp, disc, step), number_density(lmp, disc, step, ghosts, parts),
+      clamps(lmp, disc, step), surface_deficit(lmp, disc, step, ledger, number_density),
+      others(lmp, disc), frame(lmp, step.walls)
   {
   }
 };
 
 // clang-format off
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), Scene(lmp, this),
-    members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
-    keywords(members->keywords), clock(members->clock), check(members->check),
-    changes(members->changes), population(members->population),
-    number_density(members->number_density), clamps(members->clamps), forward(lmp, state),
-    back(lmp, state), one_array(lmp, state), carried(nullptr)
+    FixFields(lmp, narg, arg), members(new Members(lmp, *this)), parts(members->parts),
+    disc(members->disc), step(members->step), ledger(members->ledger), ghosts(members->ghosts),
+    clock(members->clock), check(members->check), changes(members->changes),
+    population(members->population), number_density(members->number_density),
+    clamps(members->clamps), forward(lmp, disc.state), back(lmp, disc.state)
 {
+  if (lmp->citeme) lmp->citeme->add(cite_fsi);
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
   static const std::vector<std::string> names = {"cubic", "quintic", "wendland"};
@@ -83,29 +95,33 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
       "masses of particles and bonds of total-Lagrangian solids are still those of the old one",
       *const of_mode =
       "continuity and ratio go on from the density that there is, summation makes it anew";
+  Keywords &keywords = members->keywords;
   const auto positive = Range::above(0.0), ratios = Range::between(0.9, 4.0);
-  keywords.argument("particle spacing").number(dx, 0.0, positive).kept(kept);
-  keywords.argument("kernel").choice(kernel, CUBIC, names).changes(of_kernel);
-  keywords.argument("smoothing length over spacing").number(hdx, 0.0, ratios).changes(of_kernel);
-  keywords.key("scheme").choice(article, 0, {"standard", "article"});
-  const auto of_fluid = density_names(FLUID), of_solid = density_names(SOLID);
-  keywords.key("fluid").choice(density_fluid, CONTINUITY, of_fluid, "density").changes(of_mode);
-  keywords.key("solid").choice(density_solid, CONTINUITY, of_solid, "density").changes(of_mode);
+  keywords.argument("particle spacing").number(disc.dx, 0.0, positive).kept(kept);
+  keywords.argument("kernel").choice(disc.kernel, CUBIC, names).changes(of_kernel);
+  keywords.argument("smoothing length over spacing")
+      .number(disc.hdx, 0.0, ratios).changes(of_kernel);
+  keywords.key("scheme").choice(disc.article, 0, {"standard", "article"});
+  const auto of_fluid = disc.density_names(FLUID), of_solid = disc.density_names(SOLID);
+  keywords.key("fluid")
+      .choice(disc.density_fluid, disc.CONTINUITY, of_fluid, "density").changes(of_mode);
+  keywords.key("solid")
+      .choice(disc.density_solid, disc.CONTINUITY, of_solid, "density").changes(of_mode);
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
-  keywords.key("spacing").per_type(given_spacing, positive).kept(kept);
-  keywords.key("thin").types(thin);
-  keywords.key("mach").number(mach, 1.0, positive).or_word("off", Check::OFF);
-  keywords.parse(begin(lmp, keywords, {arg + 3, arg + narg}));
-  substeps = given_substeps;
-  if (article && density_fluid == CONTINUITY) density_fluid = SUMMATION;
-  if (article && density_solid == CONTINUITY) density_solid = RATIO;
+  keywords.key("spacing").per_type(disc.given_spacing, positive).kept(kept);
+  keywords.key("thin").types(disc.thin);
+  keywords.key("mach").number(disc.mach, 1.0, positive).or_word("off", Check::OFF);
+  keywords.parse(disc.begin(lmp, keywords, {arg + 3, arg + narg}));
+  step.substeps = given_substeps;
+  if (disc.article && disc.density_fluid == disc.CONTINUITY) disc.density_fluid = disc.SUMMATION;
+  if (disc.article && disc.density_solid == disc.CONTINUITY) disc.density_solid = disc.RATIO;
 
-  resolve(hdx, given_spacing);
-  choose_skin(lmp, dx);
+  disc.resolve();
+  choose_skin(lmp, disc.dx);
   const auto &before = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
   if (before && changes.any_mass()) goes_on(*before, "in the last run");
-  if (std::count(thin.begin(), thin.end(), 1.0))
-    sight = std::make_shared<Sight>(lmp, *this, walls, thin);
+  if (std::count(disc.thin.begin(), disc.thin.end(), 1.0))
+    disc.sight = std::make_shared<Sight>(lmp, disc, step.walls, disc.thin);
 
   time_integrate = force_reneighbor = create_attribute = restart_global = 1;
   pre_exchange_migrate = 1;
@@ -124,7 +140,7 @@ FixFSI::~FixFSI()
 Record FixFSI::record() const
 {
   Record record(lmp, "fix fsi");
-  keywords.write(record);
+  members->keywords.write(record);
   check.write(record);
   population.write(record);
   return record;
@@ -138,19 +154,19 @@ void FixFSI::set_fields()
   members->surface_deficit.set_array(fields);
   for (int d = 0; d < 3; d++)
     fields.set(std::string("velocity of shifting along ") + "xyz"[d], Fields::RESTART,
-               d < dim && density_follows_shift(), shift_velocity[d]);
-  fields.set("walls near", Fields::STEP, walls.any(), wmask);
-  fields.set("wall velocity", Fields::STEP, noslip_walls, wall_velocity, 3);
-  fields.set("wall stiffness", Fields::STEP, particle_walls && several_stiffnesses(),
-             wall_stiffness);
+               d < disc.dim && facts_of_fluids(lmp).density_follows_shift, step.shift_velocity[d]);
+  fields.set("walls near", Fields::STEP, step.walls.any(), step.wmask);
+  fields.set("wall velocity", Fields::STEP, disc.noslip_walls, step.wall_velocity, 3);
+  fields.set("wall stiffness", Fields::STEP, particle_walls && disc.several_stiffnesses(),
+             step.wall_stiffness);
 
   forward.clear();
   forward.add(atom->rho, {FLUID, SOLID, RIGID});
   number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
-  comm_forward = std::max(MOST_COLUMNS, forward.size());
-  comm_reverse = std::max(MOST_COLUMNS, back.size());
+  comm_forward = std::max(Ghosts::MOST_COLUMNS, forward.size());
+  comm_reverse = std::max(Ghosts::MOST_COLUMNS, back.size());
 }
 
 FixFSI *FixFSI::there(LAMMPS *lmp)
@@ -181,10 +197,16 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
   return fix_fsi;
 }
 
-void FixFSI::check_pre_no(LAMMPS *lmp, const FixFSI *known)
+bool FixFSI::has(LAMMPS *lmp, const Discretization *known)
+{
+  const auto *const fix = there(lmp);
+  return fix && known == &fix->disc;
+}
+
+void FixFSI::check_pre_no(LAMMPS *lmp, const Discretization *known)
 {
   if (!Changes::in_first_step(lmp->update)) return;
-  Changes::check_pre_no(lmp, known && known == there(lmp) ? &known->changes : nullptr);
+  Changes::check_pre_no(lmp, has(lmp, known) ? &there(lmp)->changes : nullptr);
 }
 
 int FixFSI::setmask()
@@ -201,27 +223,23 @@ void FixFSI::init()
 {
   if (fixes_of<FixFSI>(lmp).size() > 1) error->all(FLERR, "There can be only one fix fsi");
   check.before_init();
-  dt_offset = 0.0;
+  step.dt_offset = 0.0;
   changes.begin_run();
-  states_entered = false;
+  disc.states_entered = false;
   clock.restore();
   find_parts();
-  profile = nullptr;
-  shift = nullptr;
-  for (auto &row : impedance) row.clear();
-  noslip_walls = false;
-  surface_ratio = 0.0;
-  for (auto *p : parts) {
-    if (auto *counters = p->counters()) profile = counters;
-    p->set_fields(*this);
-  }
+  step.shift = nullptr;
+  for (auto &row : step.impedance) row.clear();
+  disc.noslip_walls = false;
+  disc.surface_ratio = 0.0;
+  for (auto *p : parts) p->set_fields(disc);
   clamps.find();
-  gather_walls();
+  step.gather_walls(lmp);
   set_fields();
   register_fields();
 
-  kept = any_is(computes_of<Part>(lmp), &Facts::keeps_account);
-  guarding[0] = guarding[1] = 0.0;
+  ledger.kept = any_is(computes_of<Part>(lmp), &Facts::keeps_account);
+  ledger.guarding[0] = ledger.guarding[1] = 0.0;
 
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
@@ -230,20 +248,21 @@ void FixFSI::init()
   members->frame.init();
   check.materials();
   for (int i = 0; i < atom->nlocal; i++) members->others.give_defaults(i);
-  body_forces.find();
+  step.body_forces.find();
   check.init();
 }
 
 void FixFSI::setup(int)
 {
   clock.forget();
-  announce(lmp, *this);
+  announce(lmp, disc, step, parts, ledger.kept, announced);
   check.setup();
   changes.set_up();
 }
 
 void FixFSI::find_parts()
 {
+  auto &parts = members->parts;
   parts = pairs_of<Part>(lmp);
   std::sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->facts().style < b->facts().style;
@@ -277,7 +296,7 @@ void FixFSI::pre_exchange()
     if (neighbor->style) neighbor->setup_bins();
   }
   comm->exchange();
-  sort_by_place(atom, dx);
+  sort_by_place(atom, disc.dx);
 }
 
 // paper eq. 15: drift to the middle of the step
@@ -290,7 +309,7 @@ void FixFSI::initial_integrate(int)
     next_reneighbor = update->ntimestep;
     domain->pbc();
   }
-  dim == 2 ? drift<2>() : drift<3>();
+  disc.dim == 2 ? drift<2>() : drift<3>();
 }
 
 // after fix rigid has moved its bodies
@@ -301,7 +320,7 @@ void FixFSI::post_integrate()
 
 template <int D> void FixFSI::drift()
 {
-  Row *const x = rows(atom->x), *const v = rows(atom->v);
+  Vector *const x = vectors(atom->x), *const v = vectors(atom->v);
   const int *const mask = atom->mask;
   const double dth = 0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
@@ -314,31 +333,31 @@ void FixFSI::final_integrate()
 {
   for (auto *p : parts) p->prescribe();
   check.before_kick();
-  if (substeps > 1)
+  if (step.substeps > 1)
     for (auto *p : parts) p->integrate_substeps();
   if (clamps.any()) clamps.take_step();
-  set_tally(update->dt);
+  ledger.set_tally(update->dt);
   for (auto *p : parts) p->react();
-  dim == 2 ? kick<2>() : kick<3>();
+  disc.dim == 2 ? kick<2>() : kick<3>();
 }
 
 template <int D> void FixFSI::kick()
 {
-  Row *const x = rows(atom->x), *const v = rows(atom->v), *const f = rows(atom->f);
+  Vector *const x = vectors(atom->x), *const v = vectors(atom->v), *const f = vectors(atom->f);
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
-  const bool no_solids = substeps > 1;
+  const bool no_solids = step.substeps > 1;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    if (no_solids && state[type[i]].species == SOLID) continue;
+    if (no_solids && disc.state[type[i]].species == SOLID) continue;
     const double dtfm = dtf / rmass[i];
     for (int d = 0; d < D; d++) {
       v[i][d] += dtfm * f[i][d];
       x[i][d] += dth * v[i][d];
     }
-    if (shifts && state[type[i]].species == FLUID)
-      for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
+    if (step.shifts && disc.state[type[i]].species == FLUID)
+      for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += step.shift[i][d];
   }
   members->others.turn(dt);
 }
@@ -349,57 +368,36 @@ void FixFSI::update_state(bool advance)
 {
   fields.grow();
   changes.in_step();
-  inverted = -1;
-  set_tally(advance ? update->dt : 0.0);
-  body_forces.evaluate(state);
-  if (kept && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
-  Phase phase(profile);
+  step.inverted = -1;
+  ledger.set_tally(advance ? update->dt : 0.0);
+  step.body_forces.evaluate(disc.state);
+  if (ledger.kept && advance)
+    ledger.energy_out[Ledger::FIELDS] += step.body_forces.work(disc.state, groupbit);
+  Phase phase(step.profile);
   for (auto *p : parts) p->begin_state(advance);
-  if (walls.any()) {
+  if (step.walls.any()) {
     phase.next(Profile::WALLS);
-    gather_walls();
-    find_near_walls();
+    step.gather_walls(lmp);
+    step.find_near_walls(atom, disc);
   }
 
   phase.next(Profile::DENSITY);
   bool sums = false;
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
-  sent = &back;
-  if (sums && force->newton_pair) reverse_comm(profile, comm, this);
+  if (sums) ghosts.add(back);
   for (auto *p : parts) p->advance(advance);
   number_density.renew();
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
-  sent = &forward;
-  forward_comm(profile, comm, this);
+  ghosts.send(forward);
   for (auto *p : parts) p->end_state(advance);
-}
-
-void FixFSI::carry(double *array, int columns)
-{
-  carried = array;
-  one_array.clear();
-  one_array.add(carried, {NONE, FLUID, SOLID, RIGID}, nullptr, columns);
-  sent = &one_array;
-}
-
-void FixFSI::add_ghosts(double *array, int columns)
-{
-  carry(array, columns);
-  if (force->newton_pair) reverse_comm(profile, comm, this, columns);
-}
-
-void FixFSI::send_to_ghosts(double *array, int columns)
-{
-  carry(array, columns);
-  forward_comm(profile, comm, this, columns);
 }
 
 void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
-  members->others.give_defaults(i);
-  if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
+  if (!parts.empty()) members->others.give_defaults(i);    // not before the first run
+  if (update->whichflag == 1 && disc.state[atom->type[i]].species == FLUID && !is_moved(i, lmp))
     error->one(FLERR,
                "Fluid atom {} was made during a run and is not in group {} of fix {}: no fix "
                "integrates it. Give the fix that makes it that group",
@@ -410,11 +408,11 @@ void FixFSI::set_arrays(int i)
 // reference of density mode ratio.
 void FixFSI::write_restart(FILE *fp)
 {
-  double all[NTERM];
-  MPI_Allreduce(energy_out, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
+  double all[Ledger::NTERM];
+  MPI_Allreduce(ledger.energy_out, all, Ledger::NTERM, MPI_DOUBLE, MPI_SUM, world);
   Record record = this->record();
   clock.write(record);
-  if (kept) record.add("ledger", std::vector<double>(all, all + NTERM));
+  if (ledger.kept) record.add("ledger", std::vector<double>(all, all + Ledger::NTERM));
   members->surface_deficit.write(record);
   fields.write(record);
   record.write(fp);
@@ -423,12 +421,14 @@ void FixFSI::write_restart(FILE *fp)
 // with the kernel of the particles' masses
 bool FixFSI::goes_on(const Record &record, const std::string &when)
 {
+  Keywords &keywords = members->keywords;
   keywords.compare(record, when);
   check.read(record);
   population.read(record);
   const bool other_h = keywords.differs(record, "smoothing length over spacing");
   const bool other_kernel = other_h || keywords.differs(record, "kernel");
-  if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
+  if (other_kernel &&
+      (disc.density_fluid == disc.SUMMATION || disc.density_solid == disc.SUMMATION))
     error->all(FLERR,
                "Fix fsi: density mode summation must keep kernel and smoothing length, for "
                "which the masses of its particles were made");
@@ -444,6 +444,6 @@ void FixFSI::restart(char *buf)
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");
-    std::copy_n(terms.begin(), std::min(terms.size(), (size_t) NTERM), energy_out);
+    std::copy_n(terms.begin(), std::min(terms.size(), (size_t) Ledger::NTERM), ledger.energy_out);
   }
 }

@@ -21,7 +21,6 @@ FixStyle(fsi,FixFSI);
 #define LMP_FIX_FSI_H
 
 #include "fsi_fields.h"
-#include "fsi_scene.h"
 
 #include <memory>
 #include <string>
@@ -33,17 +32,19 @@ namespace FSI {
   class Check;
   class Clamps;
   class Clock;
-  class Keywords;
   class NumberDensity;
+  class Part;
   class Population;
-  class Record;
+  struct Discretization;
+  struct Ledger;
+  struct StepState;
 }    // namespace FSI
 
-// The centre of the package: sets the scene (spacing, kernel), integrates in time (position Verlet)
-// and calls what takes part in a step, which brings density and stress of every particle to the
-// middle of the step before forces are computed.
+// The centre of the package: integrates in time (position Verlet) and calls what takes part in a
+// step, which brings density and stress of every particle to the middle of the step before forces
+// are computed. It has the objects that those share.
 
-class FixFSI : public FSI::FixFields, public FSI::Scene {
+class FixFSI : public FSI::FixFields {
   struct Members;
   const std::unique_ptr<Members> members;
 
@@ -57,8 +58,10 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   // the same, for who needs what the setup of a run finds: an error if there was none since atoms
   // were made, deleted or changed, or pair styles given
   static FixFSI *ready(class LAMMPS *, const std::string &who);
+  // is that of the fix fsi that there is?
+  static bool has(class LAMMPS *, const FSI::Discretization *known);
   // of pairs in the first step of a run with pre no: an error if there is another fix fsi, or none
-  static void check_pre_no(class LAMMPS *, const FixFSI *known);
+  static void check_pre_no(class LAMMPS *, const FSI::Discretization *known);
   // once, before the first run after a restart file was read: what the file keeps for fixes that go
   // by another ID now
   bool ids_checked = false;
@@ -76,25 +79,23 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  FSI::Keywords &keywords;
+  // what takes part in a step, in the order of its calls; from init() on
+  const std::vector<FSI::Part *> &parts;
+  FSI::Discretization &disc;    // constant after init()
+  FSI::StepState &step;
+  FSI::Ledger &ledger;
+  FSI::Ghosts &ghosts;    // messages of parts
   FSI::Clock &clock;
   FSI::Check &check;        // stops a run that has lost its meaning
   FSI::Changes &changes;    // since the last run
   FSI::Population &population;
   FSI::NumberDensity &number_density;
   FSI::Clamps &clamps;    // rigid bodies
-  // to local atoms what pairs left on their ghosts, in rows of so many numbers
-  static constexpr int MOST_COLUMNS = 16;
-  void add_ghosts(double *rows, int columns = 1);
-  void send_to_ghosts(double *rows, int columns = 1);
-  void space_levels(const std::vector<int> &types) { resolve_levels(hdx, given_spacing, types); }
 
  private:
-  void set_fields();
   int given_substeps;
-  double hdx;                           // h over dx
-  std::vector<double> given_spacing;    // per type; 0: dx
-
+  std::string announced;    // the list of effects as last printed
+  void set_fields();
   void find_parts();
   FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);
@@ -102,9 +103,6 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   // ghosts get density, number density where in use, what parts of the step add; back come the
   // sums that pairs left on them
   FSI::Message forward, back;
-  FSI::Message one_array;    // both ways
-  double *carried;           // that array
-  void carry(double *array, int columns);
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();

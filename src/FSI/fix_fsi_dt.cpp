@@ -20,6 +20,7 @@
 #include "force.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_limits.h"
 #include "fsi_record.h"
@@ -46,9 +47,9 @@ static constexpr double PRINT =
     0.95;    // causes whose limits differ by less than this are not worth a line each
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), disc(nullptr), step(nullptr),
-    keywords(lmp, "fix fsi/dt"), cut(false), limits(new Limits(lmp)), target(BIG), cause(MAXIMUM),
-    ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/dt"), cut(false), limits(new Limits(lmp)),
+    target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0),
+    restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   keywords.argument("interval").integer(interval, 1, 1);
@@ -89,9 +90,9 @@ void FixFSIDt::stop_at(double time)
 
 void FixFSIDt::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");
-  disc = fix_fsi;
-  step = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
   if (fixes_of<FixFSIDt>(lmp).size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
   if (update->dt <= 0.0 || update->dt >= BIG)
     error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
@@ -146,7 +147,7 @@ void FixFSIDt::setup(int)
 void FixFSIDt::find_outside() const
 {
   const auto outside = [&](int i, int species) {
-    return !(atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit) &&
+    return !(atom->mask[i] & groupbit) && (atom->mask[i] & disc->mover->groupbit) &&
         disc->state[atom->type[i]].species == species;
   };
   const auto found = find_particles(atom, world, [&](int i) {
@@ -155,7 +156,7 @@ void FixFSIDt::find_outside() const
   if (found.count == 0) return;
   const auto text = fmt::format(
       "Fix fsi/dt: {} particles that fix {} moves, the first of them atom {}, are not in group {}",
-      found.count, fix_fsi->id, found.first, group->names[igroup]);
+      found.count, disc->mover->id, found.first, group->names[igroup]);
   if (automatic && find_particles(atom, world, [&](int i) {
                      return outside(i, SOLID);
                    }).count)
@@ -245,8 +246,7 @@ void FixFSIDt::find_limits()
 {
   const bool may = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   const bool substeps = may && (automatic || step->substeps > 1);
-  limits->find(*disc, fix_fsi->viscosity, groupbit, fix_fsi->groupbit, substeps, of_fluid,
-               of_solid);
+  limits->find(*disc, step->viscosity, groupbit, substeps, of_fluid, of_solid);
   limits->reduce();
 }
 
@@ -339,7 +339,7 @@ double FixFSIDt::compute_vector(int k)
   if (k < NLIMIT) return limit[k];
   if (k == NLIMIT) return cause + 1;
   const auto *const now = FixFSI::there(lmp);
-  return next_substeps ? next_substeps : fix_fsi && now ? now->substeps : 0;
+  return next_substeps ? next_substeps : disc && now ? now->step.substeps : 0;
 }
 
 void FixFSIDt::write_restart(FILE *fp)

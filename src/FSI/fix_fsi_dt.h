@@ -30,8 +30,6 @@ FixStyle(fsi/dt,FixFSIDt);
 namespace LAMMPS_NS {
 namespace FSI {
   class Limits;
-  struct Discretization;
-  struct StepState;
 }    // namespace FSI
 
 // Time step, and number of sub-steps of total-Lagrangian solids, from what the particles do.
@@ -58,9 +56,8 @@ class FixFSIDt : public Fix, public FSI::Part {
 
  private:
   enum CheckAction { NO_CHECK, WARN, STOP };
-  class FixFSI *fix_fsi;
-  const FSI::Discretization *disc;    // of it
-  FSI::StepState *step;
+  const FSI::Discretization *disc = nullptr;    // of fix fsi
+  FSI::StepState *step = nullptr;
 
   FSI::Keywords keywords;
   int interval;

@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_number_density.h"
 #include "fsi_open_end.h"
 #include "fsi_pair_laws.h"
@@ -118,9 +119,12 @@ void FixFSIInlet::read_given(const std::string *velocity, const std::string &pre
 
 void FixFSIInlet::init()
 {
-  fix_fsi = FixFSI::find(lmp, end.label);
-  disc = fix_fsi;
-  step = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, end.label);
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  ledger = &fix_fsi->ledger;
+  ghosts = &fix_fsi->ghosts;
+  number_density = &fix_fsi->number_density;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", end.label);
   if (disc->density_fluid != Discretization::CONTINUITY)
@@ -142,7 +146,7 @@ void FixFSIInlet::init()
                end.name, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0,
                OpenEnd::FAR, update->unit_style, std::sqrt(away / (OpenEnd::FAR * soft.rho0)));
   }
-  members->buffer.init(fix_fsi);
+  members->buffer.init(*disc, *ledger, fix_fsi->population);
 }
 
 // the buffer is full: plane and length are those of before
@@ -208,10 +212,10 @@ void FixFSIInlet::advance(bool advance)
   const bool wants_velocity = end.has_own_velocity(), wants_pressure = end.has_own_pressure();
   const bool varies = !end.given.name(PRESSURE).empty();
   if (varies) end.given.evaluate_for(end.places, PRESSURE, 1);
-  const auto &g = fix_fsi->body_forces.of_type;
+  const auto &g = step->body_forces.of_type;
   end.measure(g, varies && !warned_of_far);
   fit.measure();
-  fullness.keep(fix_fsi, dt);    // knows the flow of now, after a restart, too
+  fullness.keep(*ledger, dt);    // knows the flow of now, after a restart, too
   absorber.advance(dt, driven);
   check_far();
   buffer.check_supply();
@@ -238,7 +242,7 @@ void FixFSIInlet::advance(bool advance)
     else
       p = (end.background ? state.p0 : end.value(PRESSURE, i)) + absorber.gradient * place.inside +
           state.rho0 * state.c * absorber.wave + absorber.added;
-    fix_fsi->set_density(i, state.density(std::max(p, state.floor)), Ledger::FIELDS);
+    set_density(i, state.density(std::max(p, state.floor)), atom, *disc, *ledger, Ledger::FIELDS);
     // by that density: rates at the buffer's end depend on lists
     buffer.follow(i, place.inside, fullness.column);
   }
@@ -287,12 +291,12 @@ void FixFSIInlet::end_state(bool advance)
     if (advance && end_members->absorber.meets_pressure()) meeting.push_back(end_members);
   }
   std::vector<double> sums(looking.empty() ? 0 : atom->nmax);
-  if (!looking.empty()) fix_fsi->number_density.find(sums.data());
+  if (!looking.empty()) number_density->find(sums.data());
   for (auto *end_members : looking) end_members->fullness.look(sums.data());
   if (meeting.empty()) return;
   std::fill(sums.begin(), sums.end(), 0.0);
   first_of(pairs_of<PairFSIFluid>(lmp))->add_position_divergence(sums.data());
-  fix_fsi->add_ghosts(sums.data());
+  ghosts->add(sums.data());
   const double time = Fullness::LOOK_EVERY * (update->dt + step->dt_offset);
   for (auto *end_members : meeting) end_members->absorber.meet_pressure(sums.data(), time);
 }
@@ -300,7 +304,7 @@ void FixFSIInlet::end_state(bool advance)
 void FixFSIInlet::prescribe()
 {
   members->buffer.prescribe(members->absorber.wave);
-  if (update->dt != 0.0) fix_fsi->tally(Ledger::FIELDS, -members->buffer.push[3]);
+  if (update->dt != 0.0) ledger->tally(Ledger::FIELDS, -members->buffer.push[3]);
 }
 
 double FixFSIInlet::compute_scalar()

@@ -29,8 +29,9 @@ FixStyle(fsi/outlet,FixFSIInlet);
 
 namespace LAMMPS_NS {
 namespace FSI {
+  class NumberDensity;
   class OpenEnd;
-}
+}    // namespace FSI
 
 // An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure
 // is prescribed, and the other one that of the fluid at the plane. Here is the order of a step;
@@ -70,9 +71,11 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   // plane and length of its buffer in the last run; is that one of a restart file?
   std::vector<double> made;
   bool of_file = false;
-  class FixFSI *fix_fsi = nullptr;
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
+  FSI::Ledger *ledger = nullptr;
+  FSI::Ghosts *ghosts = nullptr;
+  const FSI::NumberDensity *number_density = nullptr;
 
   void read_given(const std::string *velocity, const std::string &pressure, const char *face);
   void check_made() const;

@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "lattice.h"
@@ -29,7 +30,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -151,7 +151,7 @@ void FixFSIMove::init()
                "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, "
                "too: leave them out",
                id);
-  refuse_free_walls(*fix_fsi);
+  refuse_free_walls(fix_fsi->disc);
   given->find();
 }
 

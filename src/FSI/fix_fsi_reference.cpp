@@ -15,7 +15,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_changes.h"
@@ -23,14 +22,13 @@
 #include "fsi_fields.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
 #include "fsi_refusals.h"
 #include "fsi_self_contact.h"
 #include "fsi_swaps.h"
-#include "modify.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -65,7 +63,7 @@ void FixFSIReference::init()
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   images.clear_planes();
   if (resting) return;
-  disc = FixFSI::find(lmp, "Fix FSI_REFERENCE");
+  disc = &FixFSI::find(lmp, "Fix FSI_REFERENCE")->disc;
   find_planes();
   if (!any()) {
     made.clear();

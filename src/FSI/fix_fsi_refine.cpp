@@ -19,9 +19,9 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_inlet.h"
-#include "force.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_others.h"
@@ -154,10 +154,10 @@ int FixFSIRefine::setmask()
 
 void FixFSIRefine::init()
 {
-  fix_fsi = FixFSI::find(lmp, label);
-  disc = fix_fsi;
-  step = fix_fsi;
-  ledger = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, label);
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  ledger = &fix_fsi->ledger;
   population = &fix_fsi->population;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", label);
@@ -250,7 +250,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
 {
   const bool first = update->ntimestep == update->firststep;
   renew_ghosts();
-  fix_fsi->gather_walls();    // those of the last force are a step behind
+  step->gather_walls(lmp);    // those of the last force are a step behind
   if (disc->sight) disc->sight->find_bodies();
   std::fill_n(local, NTOTAL, 0.0);
   look(may_split, may_merge);
@@ -292,8 +292,8 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   renew_ghosts();
   std::vector<char> moves(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++)
-    moves[i] = level(i) >= 0 && !in_open_end(i, 0) && fix_fsi->is_moved(i);
-  Settling(lmp, *fix_fsi, moves, events).run(settle_steps);
+    moves[i] = level(i) >= 0 && !in_open_end(i, 0) && is_moved(i, lmp);
+  Settling(lmp, *disc, *step, *ledger, moves, events).run(settle_steps);
 }
 
 // where they belong, with ghosts that are where these are: those that lists of before have are a
@@ -339,7 +339,7 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
 void FixFSIRefine::check_mass(int i) const
 {
   const int t = atom->type[i];
-  const double m = atom->rmass[i], usual = Others::lattice_mass(*fix_fsi, t);
+  const double m = atom->rmass[i], usual = Others::lattice_mass(*disc, t);
   if (m > 0.6 * usual && m < 1.6 * usual) return;
   error->one(FLERR,
              "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level. Commands "

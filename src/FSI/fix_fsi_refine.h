@@ -76,9 +76,8 @@ class FixFSIRefine : public Fix {
   double finest_dx;                           // from which types follow; 0: they are given
   std::vector<int> types, level_of;           // from the coarsest on; per type, -1: none of them
   const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 on are
-  class FixFSI *fix_fsi = nullptr;
   const FSI::Discretization *disc = nullptr;
-  const FSI::StepState *step = nullptr;
+  FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
   FSI::Population *population = nullptr;
   std::vector<class FixFSIInlet *> open_ends;

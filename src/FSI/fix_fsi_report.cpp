@@ -22,6 +22,7 @@
 #include "force.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_population.h"
@@ -51,9 +52,9 @@ static std::string word(const std::string &text)
 }
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), profile(new Profile()), fix_fsi(nullptr), disc(nullptr), energy(nullptr),
-    fp(nullptr), first_step(0), natoms(0), first_time(0.0), any_held(false),
-    listed(-1), momentum{}, impulse{}, collected(-1), output{}
+    Fix(lmp, narg, arg), profile(new Profile()), energy(nullptr), fp(nullptr), first_step(0),
+    natoms(0), first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{},
+    collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
   if (igroup)
@@ -80,13 +81,16 @@ FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
 FixFSIReport::~FixFSIReport()
 {
   if (fp) fclose(fp);
-  for (auto *fix : fixes_of<FixFSI>(lmp)) fix->profile = nullptr;
+  for (auto *fix : fixes_of<FixFSI>(lmp)) fix->step.profile = nullptr;
 }
 
 void FixFSIReport::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
-  disc = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
+  fix_fsi->step.profile = profile.get();
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  population = &fix_fsi->population;
   if (fixes_of<FixFSIReport>(lmp).size() > 1)
     error->all(FLERR, "There can be only one fix fsi/report");
   energy = first_of(computes_of<ComputeFSIEnergy>(lmp));
@@ -101,9 +105,9 @@ void FixFSIReport::begin()
   for (auto &given : impulse) given = {};
   momentum = momentum_of_moving();
   fields.clear();
-  for (const auto &field : fix_fsi->body_forces.all)
+  for (const auto &field : step->body_forces.all)
     if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
-  any_held = group->count(0) > group->count(fix_fsi->igroup);
+  any_held = group->count(0) > group->count(disc->mover->igroup);
   listed = -1;
   if (energy) {
     energy->compute_vector();
@@ -115,7 +119,7 @@ void FixFSIReport::begin()
 // that there are, less those that inlets and outlets have made
 bigint FixFSIReport::particles() const
 {
-  return count_of(atom->nlocal, world) - fix_fsi->population.net;
+  return count_of(atom->nlocal, world) - population->net;
 }
 
 // this rank's impulses of this step
@@ -134,7 +138,7 @@ void FixFSIReport::end_of_step()
     listed = neighbor->lastcall;
     held.clear();
     for (int i = 0; i < atom->nlocal; i++)
-      if (!(atom->mask[i] & fix_fsi->groupbit)) held.push_back(i);
+      if (!(atom->mask[i] & disc->mover->groupbit)) held.push_back(i);
   }
   Vector sum{};
   for (const int i : held)
@@ -146,7 +150,7 @@ FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
 {
   double local[4] = {}, all[4];
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & fix_fsi->groupbit)) continue;
+    if (!(atom->mask[i] & disc->mover->groupbit)) continue;
     const double m = atom->rmass[i], *const v = atom->v[i];
     for (int d = 0; d < 3; d++) local[d] += m * v[d];
     local[3] += m * std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -179,7 +183,7 @@ FixFSIReport::Balance FixFSIReport::balance() const
 double FixFSIReport::compute_vector(int k)
 {
   // before the first run, or with a new fix fsi
-  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
+  if (!FixFSI::has(lmp, disc)) return 0.0;
   if (collected != update->ntimestep) output = balance().rest;
   collected = update->ntimestep;
   return output[k];
@@ -198,7 +202,7 @@ void FixFSIReport::post_run()
   }
   loop = sum_of(loop, world) / comm->nprocs;
   const double time = Clock::now(update) - first_time;
-  const bigint left = particles(), now = left + fix_fsi->population.net, lost = natoms - left;
+  const bigint left = particles(), now = left + population->net, lost = natoms - left;
   lines.clear();
   enter_line("first_step", first_step);
   enter_line("last_step", update->ntimestep);
@@ -286,7 +290,7 @@ std::string FixFSIReport::what_to_change(double loop, const double *mean, double
                a_list = steps / std::max<bigint>(neighbor->ncalls, 1),
                work = loop - mean[Profile::MESSAGES];
   const bool waits = busiest > 1.1 * work;
-  const int substeps = fix_fsi->substeps;
+  const int substeps = step->substeps;
   const double of_fluid = mean[Profile::FLUID_FORCES], of_solids = mean[Profile::SOLID_FORCES];
   struct Hint {
     bool helps;
@@ -341,7 +345,7 @@ std::string FixFSIReport::momentum_table(bool lost)
       std::sqrt(b.rest[0] * b.rest[0] + b.rest[1] * b.rest[1] + b.rest[2] * b.rest[2]) /
       (b.scale > 0.0 ? b.scale : 1.0);
   std::string others = lost ? " lost particles," : "";
-  if (fix_fsi->has_open_ends()) others += " flow through open ends,";
+  if (has_open_ends(lmp)) others += " flow through open ends,";
   for (auto &fix : modify->get_fix_list())
     if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") &&
         !utils::strmatch(fix->style, "^gravity"))
@@ -357,7 +361,7 @@ std::string FixFSIReport::momentum_table(bool lost)
   };
   row("change", "change", b.change, true);
   row("gravity", "from gravity", b.from[GRAVITY], !fields.empty());
-  row("walls", "from walls, reflections too", b.from[WALLS], fix_fsi->walls.any());
+  row("walls", "from walls, reflections too", b.from[WALLS], step->walls.any());
   row("held", "from held particles", b.from[HELD], any_held);
   row("rest",
       others.empty() ? "unaccounted for: error" : fmt::format("unaccounted for:{} error", others),

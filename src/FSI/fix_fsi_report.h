@@ -30,8 +30,9 @@ FixStyle(fsi/report,FixFSIReport);
 
 namespace LAMMPS_NS {
 namespace FSI {
-  struct Discretization;
-}
+  class Population;
+  class Profile;
+}    // namespace FSI
 
 // At the end of each run, what it cost and how exact it was. Looks and adds up, changes nothing.
 
@@ -46,12 +47,11 @@ class FixFSIReport : public Fix, public FSI::Part {
   void post_run() override;
   double compute_vector(int) override;
 
-  FSI::Profile *counters() override { return profile.get(); }
-
  private:
   const std::unique_ptr<FSI::Profile> profile;    // filled by fix fsi, pair styles and walls
-  class FixFSI *fix_fsi;
-  const FSI::Discretization *disc;    // of it
+  const FSI::Discretization *disc = nullptr;      // of fix fsi
+  const FSI::StepState *step = nullptr;
+  const FSI::Population *population = nullptr;
   class ComputeFSIEnergy *energy;
   FILE *fp;    // of rank 0; null: the log
 

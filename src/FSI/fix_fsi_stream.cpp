@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "fsi_refusals.h"
@@ -74,10 +75,10 @@ FixFSIStream::~FixFSIStream() = default;
 
 void FixFSIStream::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
-  disc = fix_fsi;
-  step = fix_fsi;
-  ledger = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  ledger = &fix_fsi->ledger;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && disc->density_fluid != Discretization::CONTINUITY)
@@ -186,7 +187,7 @@ void FixFSIStream::advance(bool advance)
   for (const auto &[i, weight] : zone) {
     if (weight == 0.0) continue;
     const double mean = all[2 * type[i] + 1] / all[2 * type[i]];
-    fix_fsi->set_density(i, rho[i] + part(weight) * (mean - rho[i]), Ledger::FIELDS);
+    set_density(i, rho[i] + part(weight) * (mean - rho[i]), atom, *disc, *ledger, Ledger::FIELDS);
   }
 }
 

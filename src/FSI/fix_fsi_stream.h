@@ -60,7 +60,6 @@ class FixFSIStream : public Fix, public FSI::Part {
   double rate, density_rate;    // 1/time, in the middle of the zone
   double low, high;             // ends of the zone along the axis
   class Region *region;
-  class FixFSI *fix_fsi = nullptr;
   const FSI::Discretization *disc = nullptr;
   const FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;

@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "fsi_changes.h"
 #include "fsi_find.h"
+#include "fsi_hub.h"
 #include "fsi_record.h"
 #include "fsi_refusals.h"
 #include "fsi_solid_laws.h"
@@ -77,7 +78,7 @@ void FixFSIStress::init()
 {
   if (fixes_of<FixFSIStress>(lmp).size() > 1)
     error->all(FLERR, "There can be only one fix fsi/stress");
-  const Discretization &disc = *FixFSI::find(lmp, "Fix fsi/stress");
+  const Discretization &disc = FixFSI::find(lmp, "Fix fsi/stress")->disc;
   choose_fields();    // another pair_style command may have changed what is kept
   // what had a stress keeps it, what had none never gets the right one
   for (int i = 0; i < atom->nlocal && update->whichflag == 1; i++) {

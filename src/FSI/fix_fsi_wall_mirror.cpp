@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
@@ -171,9 +172,10 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_given) const
 
 void FixFSIWallMirror::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
-  disc = fix_fsi;
-  ledger = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  ledger = &fix_fsi->ledger;
 }
 
 // a fluid particle that starts behind a wall is a mistake in the script
@@ -196,8 +198,8 @@ void FixFSIWallMirror::setup(int)
 // the kick of gravity is not reflected. What that of the other forces differs by, density takes up.
 void FixFSIWallMirror::post_integrate()
 {
-  const Phase phase(fix_fsi->profile, Profile::WALLS);
-  auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const Phase phase(step->profile, Profile::WALLS);
+  auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   const int *const mask = atom->mask, *const type = atom->type;
   const double dth = 0.5 * update->dt, near = guard * disc->dx;
 
@@ -214,16 +216,17 @@ void FixFSIWallMirror::post_integrate()
       // behind a segment already at the last step: it flows there by right
       const double ahead = update->dt * w.side * (v[i][w.axis] - w.velocity[w.axis]);
       if (w.finite && a < 0.0 && a < ahead) continue;
-      const double before = ledger->kept ? fix_fsi->potential(i) : 0.0;
+      const double before = ledger->kept ? step->body_forces.potential(i) : 0.0;
       x[i][w.axis] += w.side * 2.0 * (near - a);
-      if (ledger->kept) ledger->energy_out[Ledger::WALLS] += before - fix_fsi->potential(i);
+      if (ledger->kept)
+        ledger->energy_out[Ledger::WALLS] += before - step->body_forces.potential(i);
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) {
         if (ledger->kept)
           ledger->energy_out[Ledger::WALLS] += 2.0 * vn * atom->rmass[i] *
-              (v[i][w.axis] - vn + dth * fix_fsi->body_forces.on(i)[w.axis]);
+              (v[i][w.axis] - vn + dth * step->body_forces.on(i)[w.axis]);
         v[i][w.axis] -= 2.0 * vn;
-        if (fix_fsi->profile) fix_fsi->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
+        if (step->profile) step->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
       }
       reflected++;
       turns.push_back({atom->tag[i], static_cast<int>(&w - walls.data()), vn * w.side < 0.0});
@@ -268,7 +271,7 @@ void FixFSIWallMirror::go_back()
     if (i < 0) continue;
     const Wall &w = walls[t->wall];
     double &x = atom->x[i][w.axis], &v = atom->v[i][w.axis];
-    const double dth = atom->mask[i] & fix_fsi->groupbit ? 0.5 * update->dt : 0.0;
+    const double dth = atom->mask[i] & disc->mover->groupbit ? 0.5 * update->dt : 0.0;
     x = 2.0 * (w.position + w.side * guard * disc->dx) - (x + dth * v);
     if (t->turned) v = 2.0 * w.velocity[w.axis] - v;
     x -= dth * v;

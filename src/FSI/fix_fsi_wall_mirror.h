@@ -70,8 +70,8 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
     bool turned;    // the velocity, too
   };
   std::vector<Turn> turns;
-  class FixFSI *fix_fsi = nullptr;
   const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
 };
 

@@ -22,6 +22,7 @@
 #include "fsi_cells.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
@@ -66,15 +67,15 @@ FixFSIWallParticle::~FixFSIWallParticle() = default;
 
 void FixFSIWallParticle::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle");
-  disc = fix_fsi;
-  step = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
   const auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   if (!fluid)
     error->all(FLERR,
                "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
 
-  enter_states(types_of_members());
+  enter_states(fix_fsi->disc.state, types_of_members());
   if (!slip && !fluid->has_laminar() && comm->me == 0)
     error->warning(FLERR,
                    "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has "
@@ -112,7 +113,7 @@ std::vector<int> FixFSIWallParticle::types_of_members()
       error->one(FLERR,
                  "Atom {} of fix fsi/wall/particle {} is of type {}, whose material is not a wall",
                  atom->tag[i], id, atom->type[i]);
-    if (atom->mask[i] & fix_fsi->groupbit)
+    if (atom->mask[i] & disc->mover->groupbit)
       error->one(FLERR,
                  "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it "
                  "out, and move it with fix move or fix rigid",
@@ -125,11 +126,11 @@ std::vector<int> FixFSIWallParticle::types_of_members()
   return types;
 }
 
-void FixFSIWallParticle::enter_states(const std::vector<int> &types)
+void FixFSIWallParticle::enter_states(std::vector<State> &state, const std::vector<int> &types)
 {
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!types[t]) continue;
-    State &s = fix_fsi->state[t];
+    State &s = state[t];
     if (s.kept) error->all(FLERR, "Atom type {} is in two fixes fsi/wall/particle", t);
     s.kept = true;
     s.noslip = !slip;
@@ -141,9 +142,9 @@ void FixFSIWallParticle::enter_states(const std::vector<int> &types)
   }
 }
 
-void FixFSIWallParticle::set_fields(Scene &scene)
+void FixFSIWallParticle::set_fields(Discretization &of_run)
 {
-  scene.noslip_walls = scene.noslip_walls || !slip;
+  of_run.noslip_walls = of_run.noslip_walls || !slip;
 }
 
 template <class F> void FixFSIWallParticle::for_pairs(size_t level, double cutsq, F f) const
@@ -262,13 +263,13 @@ void FixFSIWallParticle::sum_up()
   fields.grow();
   for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
 
-  for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
+  for_levels(*disc, [&](size_t level, const auto &kernel) {
     for_pairs(level, kernel.cutsq, [&](int w, int j, const double *d, double rsq) {
       const double W = kernel.W(std::sqrt(rsq));
       double *const s = sum[w];
       s[0] += W;
-      const auto &g = fix_fsi->body_forces.of_type[type[j]];
-      double p = fix_fsi->pressure(j);
+      const auto &g = step->body_forces.of_type[type[j]];
+      double p = pressure_of(j, atom, *disc, *step);
       for (int k = 0; k < dim; k++) {
         p += rho[j] * g[k] * d[k];
         s[2 + k] += W * rho[j] * d[k];
@@ -289,7 +290,7 @@ void FixFSIWallParticle::sum_up()
   });
   sent = from_ghosts.get();
   if (force->newton_pair)
-    exchange(fix_fsi->profile, comm, [this]() {
+    exchange(step->profile, comm, [this]() {
       swaps->reverse<Fix>(this);
     });
 }
@@ -316,7 +317,7 @@ void FixFSIWallParticle::find_acceleration(int i, double *a) const
 // surface of what turns. Of fluids of different rho c^2 the wall has the mean, likewise
 void FixFSIWallParticle::end_state(bool advance)
 {
-  const Phase phase(fix_fsi->profile, Profile::WALLS);
+  const Phase phase(step->profile, Profile::WALLS);
   const int dim = disc->dim;
   double **v = atom->v;
   double *rho = atom->rho;
@@ -356,7 +357,7 @@ void FixFSIWallParticle::end_state(bool advance)
     }
   }
   sent = to_ghosts.get();
-  exchange(fix_fsi->profile, comm, [this]() {
+  exchange(step->profile, comm, [this]() {
     swaps->forward<Fix>(this);
   });
 }
@@ -380,7 +381,7 @@ double FixFSIWallParticle::compute_vector(int n)
 double FixFSIWallParticle::compute_scalar()
 {
   // before the first run, or with a new fix fsi
-  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
+  if (!FixFSI::has(lmp, disc)) return 0.0;
   if (update->whichflag == 0) FixFSI::ready(lmp, "Fix fsi/wall/particle");    // rows may be stale
   double counted = 0.0;
   for (size_t level = 0; level < disc->levels.size(); level++)

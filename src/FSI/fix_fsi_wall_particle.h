@@ -54,7 +54,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   void restart(char *) override;
 
   int slip, linear;    // linear: pressure is extrapolated with its gradient, not as a mean
-  void set_fields(FSI::Scene &) override;
+  void set_fields(FSI::Discretization &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at
                                             // which forces are computed
 
@@ -64,14 +64,13 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
                    // as the fluid has tension or not
   std::vector<class FixFSIMove *> movers;
   double **before;    // velocity at the last step, and whether there was one
-  class FixFSI *fix_fsi = nullptr;
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
   std::vector<int> members;                   // the group's particles, local and ghost
   const std::unique_ptr<FSI::Swaps> swaps;    // theirs
   std::unique_ptr<FSI::Message> to_ghosts, from_ghosts;
   std::vector<int> types_of_members();
-  void enter_states(const std::vector<int> &types);
+  void enter_states(std::vector<FSI::State> &, const std::vector<int> &types);
   // f(wall particle, fluid particle, distance between and its square) of those within a distance,
   // if that is not beyond the kernel's support
   template <class F> void for_pairs(size_t level, double cutsq, F f) const;

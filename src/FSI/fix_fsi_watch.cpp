@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_find.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_stop.h"
 #include "group.h"
@@ -49,7 +50,7 @@ struct FixFSIWatch::Row {
 enum { NEAREST, DENSEST, GROWTH, GONE, NROW };
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), scene(nullptr), energy_before(-1.0), violations(0)
+    Fix(lmp, narg, arg), energy_before(-1.0), violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
   for (int k = 4; k < narg; k++)
@@ -87,8 +88,10 @@ double FixFSIWatch::compute_vector(int k)
 
 void FixFSIWatch::init()
 {
-  scene = FixFSI::find(lmp, "Fix fsi/watch");
-  halt = std::make_unique<Stop>(lmp, "Fix fsi/watch", *scene);
+  const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/watch");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  halt = std::make_unique<Stop>(lmp, "Fix fsi/watch", *disc, *step, fix_fsi->parts);
 }
 
 void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
@@ -120,12 +123,11 @@ void FixFSIWatch::enter(int row, int i, double value, int j)
 // kinetic energy, and what of it is small: that of a hundredth of the speed of waves
 void FixFSIWatch::look_at_particles(double &kinetic, double &little)
 {
-  const Discretization &disc = *scene;
   const PairFSISolidTL *const solid_tl = PairFSISolidTL::find(lmp);
   std::vector<double> mass(atom->ntypes + 1, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const State &s = disc.state[atom->type[i]];
+    const State &s = disc->state[atom->type[i]];
     const double *const v = atom->v[i], m = atom->rmass[i], rho = atom->rho[i];
     // a wall is neither compressed nor integrated
     if (s.species == NONE || s.species == RIGID) continue;
@@ -134,19 +136,20 @@ void FixFSIWatch::look_at_particles(double &kinetic, double &little)
     mass[atom->type[i]] += m;
     enter(GROWTH, i, vsq);
     // spray without tension loses density, which then means nothing
-    if (s.species == FLUID && rho < s.rho0 && scene->pressure(i) == s.floor) continue;
-    const double ratio = scene->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i)
-                                                       : rho / s.rho0;
+    if (s.species == FLUID && rho < s.rho0 && pressure_of(i, atom, *disc, *step) == s.floor)
+      continue;
+    const double ratio = s.form == TOTAL_LAGRANGIAN ? 1.0 / solid_tl->volume_ratio(i)
+                                                    : rho / s.rho0;
     enter(DENSEST, i, std::abs(ratio - 1.0));
   }
   for (int t = 1; t <= atom->ntypes; t++)
-    if (mass[t] > 0.0) little += 0.5e-4 * mass[t] * disc.state[t].wave_speed_sq();
+    if (mass[t] > 0.0) little += 0.5e-4 * mass[t] * disc->state[t].wave_speed_sq();
 }
 
 // pairs whose neighbor lists are at hand: all but those inside one total-Lagrangian body
 void FixFSIWatch::look_at_pairs()
 {
-  const std::vector<Resolution> &resolution = scene->resolution;
+  const std::vector<Resolution> &resolution = disc->resolution;
   double smallest = OFF;
   for (const auto *const pair : pairs_of<PairFSI>(lmp)) {
     const NeighList *const list = pair->list;

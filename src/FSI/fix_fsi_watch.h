@@ -52,7 +52,8 @@ class FixFSIWatch : public Fix, public FSI::Part {
   struct Row;
   std::vector<Row> rows;    // what is watched, in the order of the output
   std::unique_ptr<FSI::Stop> halt;
-  const class FixFSI *scene;
+  const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
 
   int interval, warn;
   bool loses;              // does the script say how many?

@@ -20,14 +20,13 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix.h"
 #include "fix_fsi_dt.h"
 #include "fsi_cells.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
-#include "fsi_scene.h"
 #include "fsi_sight.h"
 #include "group.h"
 #include "math_extra.h"
@@ -69,19 +68,18 @@ struct Census : public Pointers {
   const Walls &walls;
   const BodyForces &body_forces;
   const std::vector<Part *> &parts;
-  const Fix *const mover;
   const int substeps;
   const Facts fluids, solids;    // of their pair styles
   std::vector<int> present;      // types that are fluid or move
   Found found[NKIND];
   double fastest = 0.0;    // speed of fluids
 
-  Census(LAMMPS *, const Scene &);
+  Census(LAMMPS *, const Discretization &, const StepState &, const std::vector<Part *> &);
   const State &state(int i) const { return disc.state[atom->type[i]]; }
   double dx(int i) const { return disc.dx_of(atom->type[i]); }
   bool fluid(int i) const { return state(i).species == FLUID; }
   bool solid(int i) const { return state(i).species == SOLID; }
-  bool moves(int i) const { return solid(i) && atom->mask[i] & mover->groupbit; }
+  bool moves(int i) const { return solid(i) && atom->mask[i] & disc.mover->groupbit; }
   bool weighs(int i) const
   {
     const auto g = body_forces.on(i);
@@ -111,10 +109,12 @@ struct Census : public Pointers {
 
 }    // namespace
 
-Census::Census(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), disc(scene), walls(scene.walls), body_forces(scene.body_forces),
-    parts(scene.parts), mover(scene.mover), substeps(scene.substeps), fluids(facts_of_fluids(lmp)),
-    solids(facts_of_solids(lmp)), present(atom->ntypes + 1)
+Census::Census(LAMMPS *lmp, const Discretization &disc, const StepState &step,
+               const std::vector<Part *> &parts) :
+    Pointers(lmp),
+    disc(disc), walls(step.walls), body_forces(step.body_forces), parts(parts),
+    substeps(step.substeps), fluids(facts_of_fluids(lmp)), solids(facts_of_solids(lmp)),
+    present(atom->ntypes + 1)
 {
   int rigid = 0;
   for (const auto &fix : modify->get_fix_by_style("^rigid")) rigid |= fix->groupbit;
@@ -125,7 +125,7 @@ Census::Census(LAMMPS *lmp, const Scene &scene) :
   double speed = 0.0;
   Found of_rank[NKIND];
   for (int i = 0; i < atom->nlocal; i++) {
-    const bool moved = scene.is_moved(i);
+    const bool moved = is_moved(i, lmp);
     if (fluid(i) || moves(i)) here[atom->type[i]] = 1;    // what is held limits nothing
     if (fluid(i)) speed = std::max(speed, std::sqrt(MathExtra::lensq3(atom->v[i])));
     const int kinds = kinds_of(i, moved, streams, rigid);
@@ -414,7 +414,7 @@ static void nothing_acts(const Census &c)
                                          "print",        "halt",      "vector",     "balance",
                                          "store/",       "STORE/",    "FSI_"};
   for (const auto &fix : c.modify->get_fix_list())
-    if (fix != c.mover &&
+    if (fix != c.disc.mover &&
         std::none_of(std::begin(watching), std::end(watching), [&](const char *s) {
           return strncmp(fix->style, s, strlen(s)) == 0;
         }))
@@ -610,7 +610,7 @@ static void seen_through(const Census &c)
       c.warn("fluid atom {} sees fluid on the other side of a body or wall of type {}, "
              "which is thinner than the kernel's support {:g}: if pressures on its two "
              "sides differ, they mix. Then fix {} ... thin {}",
-             first, t, disc.cut, c.mover->id, t);
+             first, t, disc.cut, c.disc.mover->id, t);
   }
 }
 
@@ -697,7 +697,7 @@ static void time_step(const Census &c)
   } causes[] = {{Limits::SOUND, 2.0}, {Limits::ELASTIC, 1.6}, {Limits::LAMINAR, 2.0}};
   if (!fixes_of<FixFSIDt>(c.lmp).empty()) return;
   Limits limits(c.lmp);
-  limits.find(c.disc, nullptr, c.mover->groupbit, c.mover->groupbit, c.substeps > 1);
+  limits.find(c.disc, nullptr, c.disc.mover->groupbit, c.substeps > 1);
   limits.reduce();
   double good = Limits::UNLIMITED, most = good;
   const char *what = "";
@@ -763,8 +763,8 @@ static void advise(const Census &c)
   }
   for (const auto &[of, given, but, text] : COUNTED)
     if (c.any(of) && (given == NKIND || c.any(given)) && (but == NKIND || !c.any(but)))
-      c.warn(text, c.found[of].count, c.found[of].first, c.group->names[c.mover->igroup],
-             c.mover->id);
+      c.warn(text, c.found[of].count, c.found[of].first, c.group->names[c.disc.mover->igroup],
+             c.disc.mover->id);
   if (c.fluids.style) {
     nothing_acts(c);
     speeds(c);
@@ -853,14 +853,15 @@ static void warn_idle(const Census &c)
     nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
 }
 
-void FSI::announce(LAMMPS *lmp, Scene &scene)
+void FSI::announce(LAMMPS *lmp, const Discretization &disc, const StepState &step,
+                   const std::vector<Part *> &parts, bool keeps_account, std::string &announced)
 {
-  const Census c(lmp, scene);
-  const auto text = list_effects(c, scene.kept);
+  const Census c(lmp, disc, step, parts);
+  const auto text = list_effects(c, keeps_account);
   // commands may have made fluid that nothing moves
   const auto now = fmt::format("{}{}", text, c.found[HELD_FLUID].count);
-  if (now == scene.announced) return;
-  scene.announced = now;
+  if (now == announced) return;
+  announced = now;
   if (c.comm->me == 0) utils::logmesg(lmp, text);
   advise(c);
   warn_idle(c);

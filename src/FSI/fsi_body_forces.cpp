@@ -115,3 +115,12 @@ std::array<double, 3> BodyForces::on(int i) const
       for (int d = 0; d < 3; d++) g[d] += field.g[d];
   return g;
 }
+
+// gravity may pull through a periodic face
+double BodyForces::potential(int i) const
+{
+  double x[3];
+  domain->unmap(atom->x[i], atom->image[i], x);
+  const auto g = on(i);
+  return -atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+}

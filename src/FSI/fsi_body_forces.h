@@ -36,6 +36,7 @@ namespace FSI {
     // taken in the middle between two steps. Those of the group are half a step further.
     double work(const std::vector<State> &, int groupbit) const;
     std::array<double, 3> on(int i) const;    // atom i, over its mass
+    double potential(int i) const;            // its gravitational energy, where it is now
 
     struct Field {
       Fix *fix = nullptr;

@@ -23,8 +23,8 @@
 #include "fsi_cells.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
-#include "fsi_scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -19,7 +19,7 @@
 #include "error.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"

@@ -16,8 +16,8 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_fsi.h"
 #include "force.h"
+#include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "group.h"
 #include "math_extra.h"
@@ -45,11 +45,11 @@ void Buffer::set_fields(Fields &fields)
   fields.set("velocity of the copy", Fields::RESTART, true, follower, 4);
 }
 
-void Buffer::init(FixFSI *fix)
+void Buffer::init(const Discretization &disc_in, Ledger &ledger_in, Population &population_in)
 {
-  fix_fsi = fix;
-  disc = fix;
-  population = &fix->population;
+  disc = &disc_in;
+  ledger = &ledger_in;
+  population = &population_in;
   warned_of_stranger = warned_of_supply = false;
   population->leave_an_id_free();
 }
@@ -349,7 +349,7 @@ void Buffer::make(const std::vector<Particle> &local, bool at_start)
         std::make_tuple(c.since, c.parent, -end.inside(c.x));
   });
   const int first = atom->nlocal;
-  population->make(copies, end.name, at_start ? nullptr : fix_fsi->account(Ledger::FIELDS));
+  population->make(copies, end.name, at_start ? nullptr : ledger->account(Ledger::FIELDS));
   for (int i = first; i < atom->nlocal; i++) members[i] = MEMBER;
 }
 
@@ -399,7 +399,7 @@ void Buffer::exchange(const std::vector<const OpenEnd *> &all_ends)
 
   for (const int i : gone) left.push_back(population->copy_of(i));
   population->begin();
-  population->remove(gone, fix_fsi->account(Ledger::FIELDS));
+  population->remove(gone, ledger->account(Ledger::FIELDS));
   end.renew_ranks(has_some);
   if (all[MADE] > 0.0) make(copies, false);
   population->end();
@@ -467,7 +467,7 @@ void Buffer::check_stranger(int i)
       output->thermo->lostflag == Thermo::ERROR)
     error->one(FLERR, "{} leaves the box through this end, which lets only fluid of its group pass",
                what);
-  if (warned_of_stranger || !fix_fsi->is_moved(i) || end.side * atom->v[i][axis] >= 0.0) return;
+  if (warned_of_stranger || !is_moved(i, lmp) || end.side * atom->v[i][axis] >= 0.0) return;
   warned_of_stranger = true;
   error->warning(FLERR,
                  "{} moves into the buffer, which only fluid of its group can pass: it will be "

@@ -17,14 +17,13 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix.h"
 #include "force.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_pack.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
 #include "fsi_refusals.h"
-#include "fsi_scene.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -68,8 +67,10 @@ static bool all_below(int n, const double *a, double most)
   return packed ? all_below_packed(n, a, most) : none_above(n, a, most);
 }
 
-Check::Check(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), scene(scene), disc(scene), step(scene), stop(lmp, "Fix fsi", scene)
+Check::Check(LAMMPS *lmp, const Discretization &disc, const StepState &step,
+             const std::vector<Part *> &parts) :
+    Pointers(lmp),
+    disc(disc), step(step), stop(lmp, "Fix fsi", disc, step, parts)
 {
 }
 
@@ -160,7 +161,7 @@ void Check::held_parts() const
   for (int i = 0; i < atom->nlocal; i++) {
     if (disc.state[atom->type[i]].species != SOLID) continue;
     const double *const v = atom->v[i];
-    if (scene.is_moved(i))
+    if (is_moved(i, lmp))
       bodies.insert(atom->molecule[i]);
     else if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)
       suspects.push_back(i);
@@ -183,13 +184,13 @@ void Check::integrators() const
   for (const auto &fix : modify->get_fix_list()) {
     if (!fix->time_integrate || utils::strmatch(fix->style, "^fsi")) continue;
     const auto twice = find_particles(atom, world, [&](int i) {
-      return atom->mask[i] & scene.mover->groupbit && atom->mask[i] & fix->groupbit;
+      return atom->mask[i] & disc.mover->groupbit && atom->mask[i] & fix->groupbit;
     });
     if (twice.count)
       error->all(FLERR,
                  "Fix {} (style {}) and fix {} (style fsi) both move {} particles, the first of "
                  "them atom {}: leave out one of the two for them",
-                 fix->id, fix->style, scene.mover->id, twice.count, twice.first);
+                 fix->id, fix->style, disc.mover->id, twice.count, twice.first);
   }
 }
 
@@ -316,7 +317,7 @@ void Check::before_substeps(const std::vector<int> &solids)
 {
   substepped = &solids;
   kept.resize(6 * solids.size());
-  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   double *to = kept.data();
   for (const int i : solids) {
     for (int d = 0; d < 3; d++) {
@@ -329,7 +330,7 @@ void Check::before_substeps(const std::vector<int> &solids)
 
 void Check::after_substeps()
 {
-  const auto *const v = Scene::rows(atom->v);
+  const auto *const v = vectors(atom->v);
   const int *const type = atom->type;
   for (const int i : *substepped)
     if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]]))
@@ -439,14 +440,14 @@ void Check::examine(int i, double kick)
   const State &s = disc.state[atom->type[i]];
   const double rho = atom->rho[i];
   const bool kicked =
-      (atom->mask[i] & scene.mover->groupbit) && (step.substeps == 1 || s.species != SOLID);
+      (atom->mask[i] & disc.mover->groupbit) && (step.substeps == 1 || s.species != SOLID);
   const double k = kicked ? kick / atom->rmass[i] : 0.0;
   const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
   const double vsq = a * a + b * b + c * c;    // not a number if a force is not
   const double *const x = atom->x[i];
   // torn fluid without tension has no pressure, whatever its density: spray whose density says
   // nothing until it comes together
-  const bool torn = s.species == FLUID && s.floor == 0.0 && scene.pressure(i) == 0.0;
+  const bool torn = s.species == FLUID && s.floor == 0.0 && pressure_of(i, atom, disc, step) == 0.0;
   if (vsq <= limit_sq[atom->type[i]] && rho > 0.0 && rho < OFF && std::isfinite(x[0] + x[1] + x[2]))
     return;
   const Finding lost = stop.not_finite(i, true);

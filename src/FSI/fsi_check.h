@@ -20,7 +20,6 @@
 
 #include "fsi_stop.h"
 
-#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -31,7 +30,7 @@ namespace FSI {
    public:
     static constexpr double OFF = 1.0e20;
 
-    Check(class LAMMPS *, const Scene &);
+    Check(class LAMMPS *, const Discretization &, const StepState &, const std::vector<Part *> &);
     void before_init();            // what no run may have
     void materials();              // every atom has one, of the density that its mass was made for
     void write(Record &) const;    // these densities
@@ -44,7 +43,6 @@ namespace FSI {
     void after_substeps();
 
    private:
-    const Scene &scene;    // of single particles
     const Discretization &disc;
     const StepState &step;
     Stop stop;

@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "fsi_cells.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "group.h"
 
@@ -47,7 +48,7 @@ void FSIClamp::command(int narg, char **arg)
     if (igroup == 0) error->all(FLERR, "Fsi/clamp group-ID all: expected a group of a part");
     bit[k] = group->bitmask[igroup];
   }
-  const FixFSI &fsi = *FixFSI::find(lmp, "Fsi/clamp");
+  const Discretization &disc = FixFSI::find(lmp, "Fsi/clamp")->disc;
   lmp->init();    // materials are entered there
   renew_ghosts(lmp);
 
@@ -55,16 +56,16 @@ void FSIClamp::command(int narg, char **arg)
   const int *const type = atom->type;
   int *const mask = atom->mask;
   const auto in = [&](int i, int k) {
-    return mask[i] & bit[k] && fsi.state[type[i]].form == TOTAL_LAGRANGIAN;
+    return mask[i] & bit[k] && disc.state[type[i]].form == TOTAL_LAGRANGIAN;
   };
   const int nall = atom->nlocal + atom->nghost;
-  const Cells clamps(x, nall, fsi.dim, NEXT * fsi.largest_cut, [&](int i) {
+  const Cells clamps(x, nall, disc.dim, NEXT * disc.largest_cut, [&](int i) {
     return in(i, 1);
   });
   std::vector<int> over;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!in(i, 0) || in(i, 1)) continue;
-    const double reach = NEXT * fsi.dx_of(type[i]);
+    const double reach = NEXT * disc.dx_of(type[i]);
     bool next = false;
     clamps.around(x[i], reach, [&](int j, double rsq) {
       next |= rsq < reach * reach && atom->molecule[j] == atom->molecule[i];

@@ -17,26 +17,19 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix.h"
 #include "force.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_refusals.h"
-#include "fsi_scene.h"
 #include "math_extra.h"
 #include "modify.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
-
-Clamps::Clamps(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), disc(scene), step(scene), parts(scene.parts), mover(scene.mover)
-{
-}
 
 // What moves its bodies in another way is left to its own, half a step ahead. With sub-steps that
 // is refused, here or by pair_style fsi/solid/tl.
@@ -51,12 +44,13 @@ void Clamps::find()
     bool solids = false;
     for (int i = 0; i < atom->nlocal; i++) {
       const tagint b = rigid->id_of(i);
-      if (b < 0 || disc.state[atom->type[i]].species == NONE || atom->mask[i] & mover->groupbit)
+      if (b < 0 || disc.state[atom->type[i]].species == NONE ||
+          atom->mask[i] & disc.mover->groupbit)
         continue;
       local.insert(b);
       solids = solids || disc.state[atom->type[i]].form == TOTAL_LAGRANGIAN;
     }
-    const bool in_substeps = anywhere(solids && takes_substeps(), world);
+    const bool in_substeps = anywhere(solids && step.takes_substeps(lmp), world);
     const auto ids = gather(local, world);
     const auto expected = expected_of(*rigid);
     if (in_substeps && !expected.empty())
@@ -82,23 +76,16 @@ bool Clamps::known(const Fix *fix) const
   });
 }
 
-bool Clamps::takes_substeps() const
-{
-  return step.substeps > 1 || std::any_of(parts.begin(), parts.end(), [](const Part *p) {
-           return p->facts().chooses_substeps;
-         });
-}
-
 // for its bodies to be moved here; empty: they are
 std::string Clamps::expected_of(const RigidBodies &rigid) const
 {
   const auto &all = modify->get_fix_list();
-  if (std::find(all.begin(), all.end(), rigid.fix) < std::find(all.begin(), all.end(), mover))
-    return fmt::format("after fix {}, whose sub-steps find the forces on them", mover->id);
+  if (std::find(all.begin(), all.end(), rigid.fix) < std::find(all.begin(), all.end(), disc.mover))
+    return fmt::format("after fix {}, whose sub-steps find the forces on them", disc.mover->id);
   if (rigid.is_thermal()) return "no keyword langevin, or fix rigid";
   if (rigid.is_early())
     return fmt::format("bodyforces late in fix_modify, since fix {} finds the forces on them later",
-                       mover->id);
+                       disc.mover->id);
   return {};
 }
 
@@ -314,7 +301,7 @@ void Clamps::begin_substeps(const std::vector<int> &solids)
 {
   find_members();
   clamp.assign(atom->nlocal, 0);
-  for (const int i : solids) clamp[i] = !(atom->mask[i] & mover->groupbit);
+  for (const int i : solids) clamp[i] = !(atom->mask[i] & disc.mover->groupbit);
   clamps.clear();
   for (const Member &m : members)
     if (clamp[m.i]) clamps.push_back(m);

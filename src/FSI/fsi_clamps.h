@@ -34,7 +34,10 @@ namespace FSI {
   // sums as ever.
   class Clamps : public Part, protected Pointers {
    public:
-    Clamps(LAMMPS *, const Scene &);
+    Clamps(LAMMPS *lmp, const Discretization &disc, const StepState &step) :
+        Pointers(lmp), disc(disc), step(step)
+    {
+    }
     void find();    // before a run
     bool any() const { return !bodies.empty(); }
     bool any_elastic() const { return elastic; }    // are there some that sub-steps act on?
@@ -74,10 +77,7 @@ namespace FSI {
     std::vector<double> sums;               // force and torque of each body
     const Discretization &disc;
     const StepState &step;
-    const std::vector<Part *> &parts;
-    const Fix *const mover;    // fix fsi
     bool elastic = false;
-    bool takes_substeps() const;
     std::string expected_of(const RigidBodies &) const;
     void refuse_new_ids(const RigidBodies &) const;
     void find_members();

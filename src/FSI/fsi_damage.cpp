@@ -15,7 +15,7 @@
 
 #include "atom.h"
 #include "domain.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 
 #include <algorithm>
 #include <cmath>

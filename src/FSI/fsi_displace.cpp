@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "group.h"
 #include "input.h"
@@ -28,7 +29,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -103,14 +103,14 @@ void FSIDisplace::command(int narg, char **arg)
   keywords.parse(narg, arg);
   int bit[2];
   for (int k = 0; k < 2; k++) bit[k] = group->bitmask[group_of(lmp, "Fsi/displace", names[k])];
-  const FixFSI &fsi = *FixFSI::find(lmp, "Fsi/displace");
+  const Discretization &disc = FixFSI::find(lmp, "Fsi/displace")->disc;
   const NeighList *const list = neighbors();
   const int *const type = atom->type, *const mask = atom->mask;
   const auto is_fluid = [&](int i) {
-    return mask[i] & bit[0] && fsi.state[type[i]].species == FLUID;
+    return mask[i] & bit[0] && disc.state[type[i]].species == FLUID;
   };
   const auto is_body = [&](int j) {
-    return mask[j] & bit[1] && fsi.state[type[j]].species != FLUID;
+    return mask[j] & bit[1] && disc.state[type[j]].species != FLUID;
   };
   for (int k = 0; k < 2; k++)
     if (find_particles(atom, world, [&](int i) {
@@ -120,7 +120,7 @@ void FSIDisplace::command(int narg, char **arg)
                  k == 0 ? "a fluid" : "a body");
 
   double here[3] = {}, all[3];    // particles, mass in whose place the body is; what goes
-  const auto key = find_covered(fsi, *list, is_fluid, is_body, here);
+  const auto key = find_covered(disc, *list, is_fluid, is_body, here);
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
 
   const double limit = limit_of(key, std::llround(all[0]), -NEVER, NEVER, world);

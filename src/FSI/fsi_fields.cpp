@@ -14,7 +14,10 @@
 #include "fsi_fields.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
+#include "force.h"
+#include "fsi_profile.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
@@ -355,4 +358,24 @@ void Message::add_up(int n, const int *list, const double *buf) const
     visit(list[k], [&](double *a, int m) {
       for (int c = 0; c < m; c++) a[c] += *buf++;
     });
+}
+
+const Message &Ghosts::message_of(double *rows, int columns)
+{
+  carried = rows;
+  one_array.clear();
+  one_array.add(carried, {NONE, FLUID, SOLID, RIGID}, nullptr, columns);
+  return one_array;
+}
+
+void Ghosts::send(const Message &message, int columns)
+{
+  carrier.sent = &message;
+  forward_comm(profile, comm, &carrier, columns);
+}
+
+void Ghosts::add(const Message &message, int columns)
+{
+  carrier.sent = &message;
+  if (force->newton_pair) reverse_comm(profile, comm, &carrier, columns);
 }

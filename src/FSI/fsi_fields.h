@@ -26,6 +26,7 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
+  class Profile;
   class Record;
 
   class Fields : protected Pointers {
@@ -160,8 +161,33 @@ namespace FSI {
     void register_fields();
 
    private:
+    friend class Ghosts;
     bool grows, restarts;    // with LAMMPS' own arrays
     void add_callback(int kind, int *&booked, int &n);
+  };
+
+  // Messages between particles and their ghosts, for who is no style of LAMMPS: a fix packs them
+  class Ghosts : protected Pointers {
+   public:
+    Ghosts(LAMMPS *lmp, FixFields &carrier, const std::vector<State> &state,
+           Profile *const &profile) :
+        Pointers(lmp),
+        carrier(carrier), profile(profile), one_array(lmp, state)
+    {
+    }
+    void send(const Message &, int columns = 0);    // to ghosts
+    void add(const Message &, int columns = 0);     // what pairs left on ghosts, to local atoms
+    // the same of an array with rows of so many numbers
+    static constexpr int MOST_COLUMNS = 16;
+    void send(double *rows, int columns = 1) { send(message_of(rows, columns), columns); }
+    void add(double *rows, int columns = 1) { add(message_of(rows, columns), columns); }
+
+   private:
+    FixFields &carrier;
+    Profile *const &profile;
+    Message one_array;
+    double *carried = nullptr;    // that array
+    const Message &message_of(double *rows, int columns);
   };
 
   // The numbers of atom i that the nth fix of a restart file left there; all begin with their

@@ -16,7 +16,8 @@
 #include "atom.h"
 #include "atom_vec.h"
 #include "domain.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
+#include "fsi_part.h"
 #include "math_extra.h"
 #include "neighbor.h"
 #include "update.h"
@@ -34,8 +35,8 @@ using namespace FSI;
 void Frame::init()
 {
   left = 0.0;
-  allowed = neighbor->dist_check && !domain->box_change && !scene.has_open_ends();
-  for (const auto &wall : scene.walls.wall) allowed = allowed && wall.velocity[wall.axis] == 0.0;
+  allowed = neighbor->dist_check && !domain->box_change && !has_open_ends(lmp);
+  for (const auto &wall : walls.wall) allowed = allowed && wall.velocity[wall.axis] == 0.0;
 }
 
 void Frame::find_velocity()

@@ -18,7 +18,7 @@
 
 namespace LAMMPS_NS {
 namespace FSI {
-  class Scene;
+  struct Walls;
 
   // LAMMPS builds neighbor lists anew when a particle is half a skin from where it was. Lists hold
   // as well while every particle is within half a skin of where it would be had all gone along
@@ -28,16 +28,14 @@ namespace FSI {
   // that ask for places fixed in space rely on it that none goes further than a skin.
   class Frame : protected Pointers {
    public:
-    Frame(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), allowed(false), left(0.0)
-    {
-    }
+    Frame(LAMMPS *lmp, const Walls &walls) : Pointers(lmp), walls(walls) {}
     void init();
     void move();    // once in a step, before particles move
 
    private:
-    const Scene &scene;
-    bool allowed;
-    double velocity[3], left;    // how far it may go until lists are new
+    const Walls &walls;
+    bool allowed = false;
+    double velocity[3], left = 0.0;    // how far it may go until lists are new
     void find_velocity();
   };
 

@@ -15,8 +15,8 @@
 
 #include "atom.h"
 #include "error.h"
-#include "fix_fsi.h"
 #include "force.h"
+#include "fsi_fields.h"
 #include "fsi_fluid_terms.h"
 #include "fsi_gather.h"
 #include "fsi_pair_sets.h"
@@ -32,20 +32,13 @@ using namespace FSI;
 static constexpr double LEFT = 1.0e-4;
 static constexpr int MOST = 2000;    // iterations
 
-void ImplicitViscosity::init(FixFSI *fix_fsi_in)
-{
-  fix_fsi = fix_fsi_in;
-  disc = fix_fsi;
-  step = fix_fsi;
-}
-
 const std::vector<double> &ImplicitViscosity::solve(PairSets &pairs,
                                                     const std::vector<FluidParticles> &of_level,
                                                     const ForceLaws &laws, const double *f,
                                                     int columns)
 {
-  disc->dim == 2 ? solve<2>(pairs, of_level, laws, f, columns)
-                 : solve<3>(pairs, of_level, laws, f, columns);
+  disc.dim == 2 ? solve<2>(pairs, of_level, laws, f, columns)
+                : solve<3>(pairs, of_level, laws, f, columns);
   return w;
 }
 
@@ -64,7 +57,7 @@ template <int D> void ImplicitViscosity::begin(const double *f, int columns)
   for (int i = 0; i < atom->nlocal; i++)
     for (int d = 0; d < D; d++)
       given[D * i + d] = driving[D * i + d] =
-          f[columns * i + d] + atom->rmass[i] * fix_fsi->body_forces.of_type[atom->type[i]][d];
+          f[columns * i + d] + atom->rmass[i] * step.body_forces.of_type[atom->type[i]][d];
 }
 
 template <int D>
@@ -85,7 +78,7 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
     for (int d = 0; d < D; d++) block.sign[d] = image.rubbing_sign[d];
     blocks.push_back(block);
   }
-  with_kernel(disc->kernel, D, set.h, [&](const auto &kernel) {
+  with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
     for (const Row &row : rows)
       for (const int *j = row.j; j < row.j + row.n; j++) {
         const Point<D> &pi = point[row.i], &pj = point[*j];
@@ -122,7 +115,7 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
 // y = A x of local particles; x gets its ghosts
 template <int D> void ImplicitViscosity::multiply(std::vector<double> &x, std::vector<double> &y)
 {
-  fix_fsi->send_to_ghosts(x.data(), D);
+  ghosts.send(x.data(), D);
   std::fill(y.begin(), y.end(), 0.0);
   for (const Block &block : blocks) {
     const double *of_pair = k.data() + block.first;
@@ -140,7 +133,7 @@ template <int D> void ImplicitViscosity::multiply(std::vector<double> &x, std::v
       for (int d = 0; d < D; d++) y[D * row.i + d] += sum[d];
     }
   }
-  fix_fsi->add_ghosts(y.data(), D);
+  ghosts.add(y.data(), D);
   for (size_t i = 0; i < (size_t) D * atom->nlocal; i++) y[i] += diagonal[i] * x[i];
 }
 
@@ -150,13 +143,13 @@ void ImplicitViscosity::solve(PairSets &pairs, const std::vector<FluidParticles>
 {
   const int nlocal = atom->nlocal, *const type = atom->type;
   begin<D>(f, columns);
-  pairs.for_all(step->walls, of_level[0].points,
+  pairs.for_all(step.walls, of_level[0].points,
                 [&](const PairSet &set, const std::vector<Row> &rows,
                     const std::vector<double> &visible, const Mirror *mirror, int) {
                   add_pairs<D>(set, rows, visible, mirror, of_level[set.level], laws);
                 });
-  fix_fsi->add_ghosts(diagonal.data(), D);
-  fix_fsi->add_ghosts(given.data(), D);
+  ghosts.add(diagonal.data(), D);
+  ghosts.add(given.data(), D);
   const size_t n = w.size();
   std::vector<double> z(n, 0.0), free(n, 0.0);
   for (auto *of : {&r, &p, &Ap}) of->assign(n, 0.0);
@@ -165,7 +158,8 @@ void ImplicitViscosity::solve(PairSets &pairs, const std::vector<FluidParticles>
   double scale = 0.0;
   for (int i = 0; i < nlocal; i++) {
     const double inertia = atom->rmass[i] * per_dt;
-    const bool moves = disc->state[type[i]].species == FLUID && (atom->mask[i] & fix_fsi->groupbit);
+    const bool moves =
+        disc.state[type[i]].species == FLUID && (atom->mask[i] & disc.mover->groupbit);
     for (size_t a = D * i; moves && a < (size_t) D * (i + 1); a++) {
       free[a] = 1.0;
       r[a] = given[a] - Ap[a];
@@ -176,7 +170,7 @@ void ImplicitViscosity::solve(PairSets &pairs, const std::vector<FluidParticles>
   }
   const double enough = LEFT * LEFT * sum_of(scale, world);
   double rz = 0.0;
-  for (niterations = 0;; niterations++) {
+  for (int niterations = 0;; niterations++) {
     double sums[2] = {}, all[2];
     for (size_t a = 0; a < (size_t) D * nlocal; a++) {
       if (free[a] == 0.0) continue;
@@ -200,7 +194,7 @@ void ImplicitViscosity::solve(PairSets &pairs, const std::vector<FluidParticles>
       r[a] -= free[a] * alpha * Ap[a];
     }
   }
-  fix_fsi->send_to_ghosts(w.data(), D);
+  ghosts.send(w.data(), D);
 }
 
 double ImplicitViscosity::memory_usage() const

@@ -18,15 +18,14 @@
 #define LMP_FSI_IMPLICIT_VISCOSITY_H
 
 #include "fsi_fluid_loops.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 #include "pointers.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixFSI;
-
 namespace FSI {
+  class Ghosts;
   struct PairSet;
   class PairSets;
 
@@ -36,20 +35,22 @@ namespace FSI {
   // no-slip walls and solids fluid has the velocity 2 v_wall - w_i.
   class ImplicitViscosity : protected Pointers {
    public:
-    explicit ImplicitViscosity(LAMMPS *lmp) : Pointers(lmp) {}
-    void init(FixFSI *);
+    ImplicitViscosity(LAMMPS *lmp, const Discretization &disc, const StepState &step,
+                      Ghosts &ghosts) :
+        Pointers(lmp),
+        disc(disc), step(step), ghosts(ghosts)
+    {
+    }
     // rows of dim numbers of local and ghost particles; f: what else acts, on local ones in rows of
     // `columns` numbers. Pairs and points are those of the forces.
     const std::vector<double> &solve(PairSets &, const std::vector<FluidParticles> &of_level,
                                      const ForceLaws &, const double *f, int columns);
-    int iterations() const { return niterations; }    // of the last one
     double memory_usage() const;
 
    private:
-    FixFSI *fix_fsi = nullptr;
-    const Discretization *disc = nullptr;
-    StepState *step = nullptr;
-    int niterations = 0;
+    const Discretization &disc;
+    const StepState &step;
+    Ghosts &ghosts;
     // pairs of fluids, with k in the order of the rows
     struct Block {
       const std::vector<Row> *rows;

@@ -15,12 +15,11 @@
 
 #include "atom.h"
 #include "force.h"
+#include "fsi_hub.h"
 #include "fsi_part.h"
-#include "fsi_scene.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -38,9 +37,9 @@ struct Limits::OfType {
 };
 
 std::vector<Limits::OfType> Limits::look(const Discretization &disc, const double *viscosity,
-                                         int groupbit, int moved) const
+                                         int groupbit) const
 {
-  const int *const mask = atom->mask, *const type = atom->type;
+  const int *const mask = atom->mask, *const type = atom->type, moved = disc.mover->groupbit;
   double **const v = atom->v, **const f = atom->f;
   std::vector<OfType> types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -72,10 +71,10 @@ std::vector<Limits::OfType> Limits::look(const Discretization &disc, const doubl
 
 // fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6
 // alpha); laminar: h^2/16nu; acceleration: sqrt(h/|a|)/4
-void Limits::find(const Discretization &disc, const double *viscosity, int groupbit, int moved,
-                  bool substeps, double of_fluid, double of_solid)
+void Limits::find(const Discretization &disc, const double *viscosity, int groupbit, bool substeps,
+                  double of_fluid, double of_solid)
 {
-  const auto types = look(disc, viscosity, groupbit, moved);
+  const auto types = look(disc, viscosity, groupbit);
   const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
   // elastic solids without sub-steps feel viscous forces of the start of the step
   const bool implicit =

@@ -42,16 +42,14 @@ namespace FSI {
     tagint culprit[2][2];    // particle behind sound and acceleration, of step and sub-step
 
     Limits(class LAMMPS *);
-    // of this rank's particles of a group, those that fix fsi moves being of another, times a
-    // factor of fluids and one of solids
-    void find(const Discretization &, const double *viscosity, int groupbit, int moved,
-              bool substeps, double of_fluid = FLUID_FACTOR, double of_solid = SOLID_FACTOR);
+    // of this rank's particles of a group, times a factor of fluids and one of solids
+    void find(const Discretization &, const double *viscosity, int groupbit, bool substeps,
+              double of_fluid = FLUID_FACTOR, double of_solid = SOLID_FACTOR);
     void reduce();    // of all ranks
 
    private:
     struct OfType;
-    std::vector<OfType> look(const Discretization &, const double *viscosity, int groupbit,
-                             int moved) const;
+    std::vector<OfType> look(const Discretization &, const double *viscosity, int groupbit) const;
   };
 
 }    // namespace FSI

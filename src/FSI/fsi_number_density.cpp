@@ -17,24 +17,23 @@
 #include "force.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
-#include "fsi_part.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
-#include "fsi_scene.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-NumberDensity::NumberDensity(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts) :
-    Pointers(lmp), disc(scene), step(scene), parts(scene.parts), profile(scene.profile),
-    add_ghosts(std::move(add_ghosts)), ratio(nullptr)
+NumberDensity::NumberDensity(LAMMPS *lmp, Discretization &disc, StepState &step, Ghosts &ghosts,
+                             const std::vector<Part *> &parts) :
+    Pointers(lmp),
+    disc(disc), step(step), ghosts(ghosts), parts(parts)
 {
 }
 
@@ -55,7 +54,7 @@ void NumberDensity::add_messages(Message &to_ghosts)
 void NumberDensity::renew()
 {
   if (!disc.need_psi) return;
-  const Phase phase(profile, Profile::DENSITY);
+  const Phase phase(step.profile, Profile::DENSITY);
   find(step.psi);
   if (disc.surface_ratio > 0.0) {
     double most = 0.0;
@@ -83,10 +82,19 @@ void NumberDensity::find(double *n) const
     psi = finer.w0;
   });
   for (auto *p : parts) p->add_number_density(n, disc.density_solid == Discretization::SUMMATION);
-  add_ghosts(n);
+  ghosts.add(n);
   for_finer([this](double &psi, const Resolution &finer) {
     psi *= disc.psi_bulk / finer.psi_bulk;
   });
+}
+
+std::vector<double> NumberDensity::find_gradients() const
+{
+  const size_t nall = atom->nlocal + atom->nghost;
+  std::vector<double> gradients(disc.dim * nall, 0.0);
+  for (auto *p : parts) p->add_gradient_sum(gradients.data());
+  for (int d = 0; d < disc.dim; d++) ghosts.add(&gradients[d * nall]);
+  return gradients;
 }
 
 // summation: rho_i = m_i psi_i (paper eq. 12)
@@ -150,12 +158,10 @@ double DeficitOfPlane::operator()(double s) const
   return a.second + (s - a.first) * (b.second - a.second) / (b.first - a.first);
 }
 
-SurfaceDeficit::SurfaceDeficit(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density,
-                               SumOverGhosts add_ghosts) :
+SurfaceDeficit::SurfaceDeficit(LAMMPS *lmp, const Discretization &disc, const StepState &step,
+                               Ledger &ledger, const NumberDensity &number_density) :
     Pointers(lmp),
-    disc(scene), ledger(scene), parts(scene.parts), profile(scene.profile),
-    number_density(number_density), add_ghosts(std::move(add_ghosts)), deficit(nullptr), since(0.0),
-    since_before(0.0), due(false)
+    disc(disc), step(step), ledger(ledger), number_density(number_density)
 {
 }
 
@@ -203,7 +209,7 @@ void SurfaceDeficit::advance(bool advance)
 {
   changes.clear();
   if (!deficit || (advance && !due)) return;
-  const Phase phase(profile, Profile::DENSITY);
+  const Phase phase(step.profile, Profile::DENSITY);
   begin();
   if (advance) follow();
 }
@@ -251,9 +257,8 @@ std::vector<double> SurfaceDeficit::gradients() const
 {
   const int nlocal = atom->nlocal, dim = disc.dim;
   const size_t nall = nlocal + atom->nghost;
-  std::vector<double> gradient(dim * nall, 0.0), s(nlocal);    // columns one after the other
-  for (auto *p : parts) p->add_gradient_sum(gradient.data());
-  for (int d = 0; d < dim; d++) add_ghosts(&gradient[d * nall]);
+  const std::vector<double> gradient = number_density.find_gradients();
+  std::vector<double> s(nlocal);
   for (int i = 0; i < nlocal; i++) {
     double ssq = 0.0;
     for (int d = 0; d < dim; d++) ssq += gradient[d * nall + i] * gradient[d * nall + i];

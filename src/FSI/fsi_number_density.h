@@ -20,7 +20,6 @@
 #include "fsi_part.h"
 #include "pointers.h"
 
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -28,34 +27,27 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   class Fields;
-  class Message;
-  class Profile;
   class Record;
-  class Scene;
-  struct Discretization;
-  struct Ledger;
-  struct StepState;
-
-  // adds what pairs left on ghosts to the local atoms
-  using SumOverGhosts = std::function<void(double *)>;
 
   class NumberDensity : protected Pointers {
    public:
-    NumberDensity(LAMMPS *, Scene &, SumOverGhosts);
+    NumberDensity(LAMMPS *, Discretization &, StepState &, Ghosts &, const std::vector<Part *> &);
     void set_fields(Fields &);    // for the effects that there are now
     void add_messages(Message &to_ghosts);
     // of the positions in atom->x; and the densities that follow from it
     void renew();
     // of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
     void find(double *n) const;
+    // sum_j grad_i W_ij/psi_bulk of fluids: components one after the other, with room for ghosts
+    std::vector<double> find_gradients() const;
 
    private:
     Discretization &disc;
     StepState &step;
+    Ghosts &ghosts;
     const std::vector<Part *> &parts;
-    Profile *const &profile;
-    const SumOverGhosts add_ghosts;
-    double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
+    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
+    double *ratio = nullptr;
     void find_density();
   };
 
@@ -84,7 +76,8 @@ namespace FSI {
   // result does not depend on how often it is evaluated.
   class SurfaceDeficit final : public Part, protected Pointers {
    public:
-    SurfaceDeficit(LAMMPS *, Scene &, const NumberDensity &, SumOverGhosts);
+    SurfaceDeficit(LAMMPS *, const Discretization &, const StepState &, Ledger &,
+                   const NumberDensity &);
     void set_array(Fields &);
     void write(Record &) const;
     void read(const Record &);
@@ -96,15 +89,13 @@ namespace FSI {
 
    private:
     const Discretization &disc;
+    const StepState &step;
     Ledger &ledger;
-    const std::vector<Part *> &parts;
-    Profile *const &profile;
     const NumberDensity &number_density;
-    const SumOverGhosts add_ghosts;
     // 1 + deficit (0: not known yet), and how often that of a plane it was at the start, on an edge
-    double **deficit;
-    double since, since_before;    // time since the last look, now and at the start of this step
-    bool due;
+    double **deficit = nullptr;
+    double since = 0.0, since_before = 0.0;    // the last look: now, at the start of this step
+    bool due = false;
     DeficitOfPlane of_plane;
     std::vector<double> changes;    // of deficit and density in this step
     std::vector<double> earlier;    // densities before it, for the ledger

@@ -24,8 +24,6 @@
 #include "region.h"
 #include "update.h"
 
-#include <array>
-
 using namespace LAMMPS_NS;
 using namespace FSI;
 
@@ -404,7 +402,7 @@ void Fullness::warn(bool full)
 
 // Where fluid fills the box: too many particles before the plane get a density that presses them
 // out, and those that come in follow each other at another spacing
-void Fullness::keep(Scene *scene, double dt)
+void Fullness::keep(Ledger &ledger, double dt)
 {
   const State &soft = end.softest();
   if (soft.p0 <= 0.0 || now == 0.0) return;
@@ -419,6 +417,6 @@ void Fullness::keep(Scene *scene, double dt)
     const int i = place.i;
     const double part = 1.0 - end.inside(atom->x[i]) / end.zone();
     if (part > 0.0 && part < 1.0)
-      scene->set_density(i, atom->rho[i] * (1.0 + part * rise), Ledger::FIELDS);
+      set_density(i, atom->rho[i] * (1.0 + part * rise), atom, *end.disc, ledger, Ledger::FIELDS);
   }
 }

@@ -20,9 +20,9 @@
 
 #include "atom.h"
 #include "fmt/format.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_population.h"
-#include "fsi_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,6 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixFSI;
 class Region;
 
 namespace FSI {
@@ -161,7 +160,7 @@ namespace FSI {
 
     Fullness(LAMMPS *lmp, const OpenEnd &end) : Pointers(lmp), end(end) {}
     void look(const double *psi);
-    void keep(Scene *, double dt);
+    void keep(Ledger &, double dt);
 
    private:
     const OpenEnd &end;
@@ -283,7 +282,7 @@ namespace FSI {
 
     Buffer(LAMMPS *lmp, OpenEnd &end) : Pointers(lmp), end(end) {}
     void set_fields(Fields &);
-    void init(FixFSI *);
+    void init(const Discretization &, Ledger &, Population &);
     void fill();    // before the first run; an empty one with the fluid before it, which goes on
     // when lists are built: what has passed the plane, or the end of the buffer
     void exchange(const std::vector<const OpenEnd *> &all_ends);
@@ -300,9 +299,9 @@ namespace FSI {
     };
 
     OpenEnd &end;
-    FixFSI *fix_fsi = nullptr;
     Population *population = nullptr;
     const Discretization *disc = nullptr;
+    Ledger *ledger = nullptr;
     double *members = nullptr;    // per atom: Member, as a number since a field is one
     // of one that is followed: where the next one would be now; its velocity, and the step since
     // when

@@ -15,10 +15,9 @@
 
 #include "atom.h"
 #include "error.h"
-#include "fix.h"
 #include "force.h"
 #include "fsi_gather.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 #include "math_const.h"
 
 #include <cmath>
@@ -26,11 +25,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 using MathConst::MY_PI;
-
-Others::Others(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), disc(scene), scene(scene), spins(false)
-{
-}
 
 void Others::init()
 {
@@ -51,7 +45,6 @@ void Others::init()
 // body that keeps its reference the cell's, which is exact; else 1/psi, whose sum is
 void Others::give_defaults(int i) const
 {
-  if (scene.parts.empty()) return;    // before the first run
   const int type = atom->type[i];
   const State &s = disc.state[type];
   if (s.species == NONE) return give_density(i);
@@ -90,7 +83,7 @@ void Others::turn(double dt) const
   double **const omega = atom->omega, **const torque = atom->torque;
   const double dtf = dt * force->ftm2v / 0.4;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & scene.mover->groupbit)) continue;
+    if (!(atom->mask[i] & disc.mover->groupbit)) continue;
     if (disc.state[atom->type[i]].species != NONE || atom->radius[i] == 0.0) continue;
     const double by = dtf / (atom->rmass[i] * atom->radius[i] * atom->radius[i]);
     for (int d = 0; d < 3; d++) omega[i][d] += by * torque[i][d];

@@ -22,12 +22,11 @@
 
 namespace LAMMPS_NS {
 namespace FSI {
-  class Scene;
   struct Discretization;
 
   class Others : protected Pointers {
    public:
-    Others(LAMMPS *, const Scene &);
+    Others(LAMMPS *lmp, const Discretization &disc) : Pointers(lmp), disc(disc), spins(false) {}
     void init();
     // mass of a particle of this type's stress-free lattice
     static double lattice_mass(const Discretization &, int type);
@@ -37,7 +36,6 @@ namespace FSI {
 
    private:
     const Discretization &disc;
-    const Scene &scene;    // what fix fsi moves, and whether there was a run
     bool spins;
     void give_density(int i) const;
     bool has_mass_of_new_sphere(int i) const;

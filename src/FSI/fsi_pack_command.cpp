@@ -19,12 +19,12 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_cells.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_refine.h"
 #include "fsi_surface.h"
 #include "group.h"
 #include "input.h"
-#include "neighbor.h"
 #include "platform.h"
 
 #include <algorithm>
@@ -48,8 +48,7 @@ static constexpr double TAKES_PLACE = 0.75;
 static constexpr double APART = 0.6;
 
 FSIPack::FSIPack(LAMMPS *lmp) :
-    Command(lmp), fix_fsi(nullptr), body(0), fluid(0), still(0), filler(0), gone_at_once(0),
-    distant(0), band(0.0)
+    Command(lmp), body(0), fluid(0), still(0), filler(0), gone_at_once(0), distant(0), band(0.0)
 {
 }
 
@@ -109,11 +108,11 @@ double FSIPack::volume_of_cell(const double *middle, const double *sides, double
 double FSIPack::volume_inside() const
 {
   const int dim = domain->dimension;
-  const double dx = fix_fsi->levels.back().dx;
+  const double dx = disc->levels.back().dx;
   double lo[3], hi[3], sides[3] = {}, x[3], sum = 0.0;
   std::copy_n(domain->boxlo, 3, lo);
   std::copy_n(domain->boxhi, 3, hi);
-  for (const auto &w : fix_fsi->walls.wall) {
+  for (const auto &w : step->walls.wall) {
     if (w.finite) continue;
     double &end = w.side > 0.0 ? lo[w.axis] : hi[w.axis];
     end = w.side > 0.0 ? std::max(end, w.position) : std::min(end, w.position);
@@ -144,14 +143,14 @@ double FSIPack::volume_of_still() const
 {
   double sum = 0.0;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & still) sum += atom->rmass[i] / fix_fsi->state[atom->type[i]].rho0;
+    if (atom->mask[i] & still) sum += atom->rmass[i] / disc->state[atom->type[i]].rho0;
   return sum_of(sum, world);
 }
 
 // of the cell of a particle
 double FSIPack::part_inside(int i) const
 {
-  const double dx = fix_fsi->dx_of(atom->type[i]), sides[3] = {dx, dx, dx};
+  const double dx = disc->dx_of(atom->type[i]), sides[3] = {dx, dx, dx};
   return volume_of_cell(atom->x[i], sides, 0.125 * dx) / std::pow(dx, domain->dimension);
 }
 
@@ -161,7 +160,7 @@ std::vector<char> FSIPack::deepest(int bit, double n) const
   std::vector<double> key(atom->nlocal, 1.0e9);
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit) || !fix_fsi->walls.is_before_planes(atom->x[i])) continue;
+    if (!(atom->mask[i] & bit) || !step->walls.is_before_planes(atom->x[i])) continue;
     key[i] =
         std::floor(1.0e6 * distance(i, outward) / band + 0.5) + part_by_place(atom->x[i], domain);
   }
@@ -180,8 +179,8 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++) {
     if (atom->mask[i] & fluid) here[0] += part_inside(i);
     if (!(atom->mask[i] & body)) continue;
-    if (fix_fsi->walls.is_before_planes(atom->x[i])) here[1] += part_inside(i);
-    cell = std::pow(fix_fsi->dx_of(atom->type[i]), domain->dimension);
+    if (step->walls.is_before_planes(atom->x[i])) here[1] += part_inside(i);
+    cell = std::pow(disc->dx_of(atom->type[i]), domain->dimension);
   }
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(&cell, &all[2], 1, MPI_DOUBLE, MPI_MAX, world);
@@ -198,21 +197,21 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & fluid && displaced[i])
       atom->mask[i] ^= fluid | (body ? gone_at_once : filler);
-    else if (atom->mask[i] & body && !fix_fsi->walls.is_before_planes(atom->x[i])) {
+    else if (atom->mask[i] & body && !step->walls.is_before_planes(atom->x[i])) {
       if (part_inside(i) < 0.5) atom->mask[i] ^= body | gone_at_once;
     } else if (atom->mask[i] & body && !inside[i])
       atom->mask[i] ^= body | filler;
   renew_ghosts(lmp);
-  const Cells staying(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx,
+  const Cells staying(atom->x, atom->nlocal + atom->nghost, domain->dimension, disc->dx,
                       [this](int i) {
                         return (atom->mask[i] & (fluid | still)) != 0;
                       });
-  const double reach = band + fix_fsi->largest_cut;    // what moves sees no end of it
+  const double reach = band + disc->largest_cut;    // what moves sees no end of it
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & filler)) continue;
     bool fills = surface->distance(atom->x[i], reach, outward) < reach;
-    const double least = TAKES_PLACE * fix_fsi->dx_of(atom->type[i]);
+    const double least = TAKES_PLACE * disc->dx_of(atom->type[i]);
     if (fills)
       staying.around(atom->x[i], [&](int, double rsq) {
         fills = fills && rsq > least * least;
@@ -226,7 +225,7 @@ void FSIPack::choose(double volume)
 double FSIPack::keep_off(int i, double side)
 {
   double outward[3], *const x = atom->x[i];
-  const double least = BESIDE * fix_fsi->dx_of(atom->type[i]);
+  const double least = BESIDE * disc->dx_of(atom->type[i]);
   for (int k = 0; k < domain->dimension + 1; k++) {
     const double r = distance(i, outward);
     if (side * r >= least || std::fabs(r) >= band) return k == 0 ? std::fabs(r) : 0.0;
@@ -242,13 +241,13 @@ void FSIPack::set_masses(double volume)
     return (atom->mask[i] & body) != 0;
   };
   const bigint n = find_particles(atom, world, [&](int i) {
-                     return in_body(i) && fix_fsi->walls.is_before_planes(atom->x[i]);
+                     return in_body(i) && step->walls.is_before_planes(atom->x[i]);
                    }).count;
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/pack: {} encloses {:.8g}, in {} particles of {:.8g} each\n",
                    surface->name(), volume, n, volume / n);
   for (int i = 0; i < atom->nlocal; i++)
-    if (in_body(i)) atom->rmass[i] = fix_fsi->state[atom->type[i]].rho0 * volume / n;
+    if (in_body(i)) atom->rmass[i] = disc->state[atom->type[i]].rho0 * volume / n;
 }
 
 void FSIPack::remove(const std::string &name)
@@ -266,12 +265,12 @@ std::vector<double> FSIPack::part(const std::vector<double> &mobility,
                                   const std::vector<double> &side)
 {
   const int *const type = atom->type;
-  const Cells all(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx);
+  const Cells all(atom->x, atom->nlocal + atom->nghost, domain->dimension, disc->dx);
   std::vector<std::array<double, 3>> shift(atom->nlocal, {0.0, 0.0, 0.0});
   for (int i = 0; i < atom->nlocal; i++) {
     if (mobility[i] <= 0.0) continue;
     all.around(atom->x[i], [&](int j, double rsq) {
-      const double least = 0.5 * APART * (fix_fsi->dx_of(type[i]) + fix_fsi->dx_of(type[j]));
+      const double least = 0.5 * APART * (disc->dx_of(type[i]) + disc->dx_of(type[j]));
       if (i == j || rsq >= least * least) return;
       // those at one place along an axis
       const double r = std::sqrt(rsq), before = atom->tag[i] < atom->tag[j] ? -1.0 : 1.0;
@@ -300,16 +299,16 @@ void FSIPack::pack(int steps)
   double told = platform::walltime();
   while (done < steps) {
     renew_ghosts(lmp);
-    fix_fsi->gather_walls();
+    step->gather_walls(lmp);
     std::vector<double> mobility(atom->nlocal, 0.0), side(atom->nlocal, 0.0);
     std::vector<char> judged(atom->nlocal, 0);
     double outward[3];
     for (int i = 0; i < atom->nlocal; i++) {
       int &mask = atom->mask[i];
       if (!(mask & (body | fluid | filler)) || mask & distant ||
-          !fix_fsi->walls.is_before_planes(atom->x[i]))
+          !step->walls.is_before_planes(atom->x[i]))
         continue;
-      const double r = distance(i, outward), dx = fix_fsi->dx_of(atom->type[i]);
+      const double r = distance(i, outward), dx = disc->dx_of(atom->type[i]);
       if (std::fabs(r) >= band) mask |= distant;    // and stays where it is
       mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
       judged[i] = mobility[i] == 1.0 && !(mask & filler);
@@ -317,8 +316,8 @@ void FSIPack::pack(int steps)
     }
     const auto off = part(mobility, side);
     constexpr double NEVER = BESIDE + ROUND * Settling::LONGEST;    // there in a round
-    Settling settling(lmp, *fix_fsi, mobility, judged, [&](int i) {
-      if (off[i] <= NEVER * fix_fsi->dx_of(atom->type[i])) keep_off(i, side[i]);
+    Settling settling(lmp, *disc, *step, *ledger, mobility, judged, [&](int i) {
+      if (off[i] <= NEVER * disc->dx_of(atom->type[i])) keep_off(i, side[i]);
     });
     settling.run(std::min(ROUND, steps - done));
     done += std::min(ROUND, steps - done);
@@ -369,16 +368,19 @@ void FSIPack::command(int narg, char **arg)
   surface = !region.empty() ? surface_of_region(lmp, region)
       : !stl.empty()        ? surface_of_stl(lmp, stl)
                             : surface_of_outline(lmp, outline);
-  fix_fsi = FixFSI::find(lmp, "Fsi/pack");
+  auto *const fix = FixFSI::find(lmp, "Fsi/pack");
+  disc = &fix->disc;
+  step = &fix->step;
+  ledger = &fix->ledger;
   lmp->init();
   double finest = INFINITY;    // where levels meet only their events move what is there
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & (fluid ? fluid : body))
-      finest = std::min(finest, fix_fsi->dx_of(atom->type[i]));
+      finest = std::min(finest, disc->dx_of(atom->type[i]));
   MPI_Allreduce(MPI_IN_PLACE, &finest, 1, MPI_DOUBLE, MPI_MIN, world);
-  band = BAND * std::min(finest, fix_fsi->dx);
+  band = BAND * std::min(finest, disc->dx);
   renew_ghosts(lmp);
-  fix_fsi->gather_walls();
+  step->gather_walls(lmp);
   const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";
   filler = group->bitmask[group->find_or_create(fills.c_str())];
   gone_at_once = group->bitmask[group->find_or_create(goes.c_str())];

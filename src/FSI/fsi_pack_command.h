@@ -27,10 +27,12 @@ CommandStyle(fsi/pack,FSIPack);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixFSI;
 namespace FSI {
   class Surface;
-}
+  struct Discretization;
+  struct Ledger;
+  struct StepState;
+}    // namespace FSI
 
 // fsi/pack body-ID fluid-ID region ID | stl FILE | outline FILE [still group-ID] [steps N]: moves
 // the particles of a body and of the fluid around it until both fit the surface between them.
@@ -42,7 +44,9 @@ class FSIPack : public Command {
   void command(int, char **) override;
 
  private:
-  FixFSI *fix_fsi;
+  const FSI::Discretization *disc = nullptr;
+  FSI::StepState *step = nullptr;
+  FSI::Ledger *ledger = nullptr;
   std::unique_ptr<FSI::Surface> surface;
   // bits of groups, 0: there is none; still: a part of the body that stays as it is
   int body, fluid, still, filler, gone_at_once, distant;

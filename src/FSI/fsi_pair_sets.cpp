@@ -143,7 +143,7 @@ void PairSets::find_reach(bool may_sort)
 // other atoms.
 template <int D> void PairSets::find_reach(bool may_sort)
 {
-  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   const int nall = atom->nlocal + atom->nghost;
   const size_t size = may_sort ? (size_t) D * atom->nmax : 0;
   if (sorted_at.size() < size) sorted_at.resize(size);
@@ -175,7 +175,7 @@ void PairSets::look_past_thin_bodies(double *backfill, double *backfill_weight)
 {
   Sight &sight = *disc->sight;
   sight.follow_bodies();
-  const auto *const x = Scene::rows(atom->x);
+  const auto *const x = vectors(atom->x);
   const size_t n = disc->levels.size();
   struct Next {
     const Row *row, *end;
@@ -372,7 +372,7 @@ void PairSets::find_rows_with_others()
 // does the line between i and the image of j pass through the walls of this reflection?
 bool PairSets::sees(int i, int j, const Walls &walls, int reflection, const double *places) const
 {
-  const auto *const x = Scene::rows(atom->x);
+  const auto *const x = vectors(atom->x);
   const auto position = [&](int k) -> std::array<double, 3> {
     if (!places) return {x[k][0], x[k][1], x[k][2]};
     return disc->dim == 2 ? reinterpret_cast<const Point<2> *>(places)[k].position(x[k])
@@ -406,7 +406,7 @@ void PairSets::find_images(const Walls &walls, const double *places)
 void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *places)
 {
   const int *const wmask = step->wmask, *const type = atom->type, n = walls.reflections.size();
-  const auto *const x = Scene::rows(atom->x);
+  const auto *const x = vectors(atom->x);
   const bool finite = walls.finite(), hidden = set.what == PairSet::HIDDEN;
   const double *part = set.visible.data();    // of a pair and its images it is the same
   RowList *const images = set.images.data();

@@ -18,7 +18,7 @@
 #define LMP_FSI_PAIR_SETS_H
 
 #include "fsi_fluid_loops.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 #include "pointers.h"
 #include "update.h"
 

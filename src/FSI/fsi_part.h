@@ -30,9 +30,8 @@ class LAMMPS;
 
 namespace FSI {
 
+  class Ghosts;
   class Message;
-  class Profile;
-  class Scene;
   struct Discretization;
   struct Ledger;
   struct Preset;
@@ -74,6 +73,7 @@ namespace FSI {
   // of the pair style of fluids, of solids, that there is now, hybrid or not
   Facts facts_of_fluids(LAMMPS *);
   Facts facts_of_solids(LAMMPS *);
+  bool has_open_ends(const LAMMPS *);    // fixes fsi/inlet and fsi/outlet
 
   class Part {
    public:
@@ -89,7 +89,7 @@ namespace FSI {
 
     // Before a run, when the states of all types are known: arrays per atom for the effects that
     // are on; then what of them goes to ghosts, and what pairs leave on ghosts and comes back.
-    virtual void set_fields(Scene &) {}
+    virtual void set_fields(Discretization &) {}
     virtual void add_messages(Message &to_ghosts, Message &back) {}
 
     // In a step, in this order. Not to advance, in setup: the same for the state that there is,
@@ -114,7 +114,6 @@ namespace FSI {
 
     // from the middle of a step to its start: a run that stops leaves a state to go on from
     virtual void go_back() {}
-    virtual Profile *counters() { return nullptr; }    // where others enter times
 
     // Before the first step: what is simulated
     using Effect = Keywords::Effect;
@@ -131,7 +130,8 @@ namespace FSI {
   };
   // Before the first step, when it changes: every effect that is on, every one that is not and how
   // to turn it on; then advice, and what has nothing to act on (fsi_advice.cpp)
-  void announce(LAMMPS *, Scene &);
+  void announce(LAMMPS *, const Discretization &, const StepState &, const std::vector<Part *> &,
+                bool keeps_account, std::string &announced);
 
   inline bool any_is(const std::vector<Part *> &parts, bool Facts::*what)
   {

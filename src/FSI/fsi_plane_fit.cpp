@@ -15,8 +15,8 @@
 
 #include "domain.h"
 #include "fsi_gradient.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
-#include "fsi_scene.h"
 #include "neighbor.h"
 
 #include <algorithm>

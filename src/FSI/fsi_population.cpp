@@ -19,8 +19,8 @@
 #include "domain.h"
 #include "error.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_record.h"
-#include "fsi_scene.h"
 
 #include <algorithm>
 #include <numeric>
@@ -28,8 +28,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-Population::Population(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), net(0), scene(scene), disc(scene), last_id(0), made(0), removed(0), wanted(0)
+Population::Population(LAMMPS *lmp, const Discretization &disc, const StepState &step) :
+    Pointers(lmp), net(0), disc(disc), step(step), last_id(0), made(0), removed(0), wanted(0)
 {
 }
 
@@ -43,8 +43,8 @@ Particle Population::copy_of(int i) const
 double Population::energy(int i) const
 {
   const double *const v = atom->v[i];
-  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + scene.potential(i) +
-      scene.stored(i);
+  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
+      step.body_forces.potential(i) + stored(i, atom, disc);
 }
 
 // Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps

@@ -27,7 +27,7 @@ namespace LAMMPS_NS {
 namespace FSI {
   class Record;
   struct Discretization;
-  class Scene;
+  struct StepState;
 
   struct Particle {    // that is to be made
     double x[3] = {}, v[3] = {}, rho = 0.0, rmass = 0.0;
@@ -38,7 +38,7 @@ namespace FSI {
 
   class Population : protected Pointers {
    public:
-    Population(LAMMPS *, const Scene &);
+    Population(LAMMPS *, const Discretization &, const StepState &);
     Particle copy_of(int i) const;
     double energy(int i) const;    // kinetic, potential, compressive
 
@@ -62,8 +62,8 @@ namespace FSI {
     void read(const Record &);
 
    private:
-    const Scene &scene;
     const Discretization &disc;
+    const StepState &step;
     tagint last_id;                  // the largest that one had which was made or deleted here
     std::vector<tagint> free_ids;    // below that, released; in rising order
     bigint made, removed, wanted;    // since begin(): of this rank; of all

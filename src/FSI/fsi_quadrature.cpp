@@ -25,7 +25,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fsi_gather.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 #include "math_extra.h"
 
 #include <array>

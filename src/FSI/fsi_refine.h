@@ -37,7 +37,6 @@ class Region;
 namespace FSI {
   struct Discretization;
   struct Ledger;
-  class Scene;
   struct StepState;
 
   // How a fluid particle becomes two of the next finer level: along the direction in which there is
@@ -200,17 +199,17 @@ namespace FSI {
     static constexpr double LONGEST = 0.05;    // step of a sweep over dx
     // how freely each local particle moves, 0 to 1, and is judged; bound(i): keeps it where it may
     // be after each move
-    Settling(LAMMPS *, Scene &, const std::vector<double> &mobility,
-             const std::vector<char> &judged, const std::function<void(int)> &bound);
+    Settling(LAMMPS *, const Discretization &, const StepState &, Ledger &,
+             const std::vector<double> &mobility, const std::vector<char> &judged,
+             const std::function<void(int)> &bound);
     const Residue &residue() const { return last; }    // before the last move
     // moves: per local particle, may it be moved? Ghosts are where these are, and follow. Changed:
     // where something did, of this rank
-    Settling(LAMMPS *, Scene &, const std::vector<char> &moves,
-             const std::vector<Position> &changed);
+    Settling(LAMMPS *, const Discretization &, const StepState &, Ledger &,
+             const std::vector<char> &moves, const std::vector<Position> &changed);
     void run(int sweeps);
 
    private:
-    const Scene &scene;
     const Discretization &disc;
     const StepState &step;
     Ledger &ledger;

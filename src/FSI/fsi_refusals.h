@@ -20,8 +20,6 @@
 
 #include "error.h"
 
-#include <string>
-
 namespace LAMMPS_NS {
 namespace FSI {
 

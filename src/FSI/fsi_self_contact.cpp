@@ -19,8 +19,8 @@
 #include "error.h"
 #include "fsi_cells.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_pair_laws.h"
-#include "fsi_scene.h"
 #include "neighbor.h"
 #include "update.h"
 

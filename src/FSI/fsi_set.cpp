@@ -20,6 +20,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "group.h"
 #include "input.h"
@@ -28,7 +29,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -73,8 +73,8 @@ void FSISet::command(int narg, char **arg)
                    "before the first run",
                    group_name, names[what], update->ntimestep);
   lmp->init();    // materials, masses and gravity are entered there
-  BodyForces &forces = fix_fsi->body_forces;
-  forces.evaluate(fix_fsi->state);
+  BodyForces &forces = fix_fsi->step.body_forces;
+  forces.evaluate(fix_fsi->disc.state);
   if (what == HYDROSTATIC && std::none_of(forces.all.begin(), forces.all.end(), [](const auto &f) {
         return f.mask;
       }))
@@ -87,7 +87,7 @@ void FSISet::command(int narg, char **arg)
     if (atom->mask[i] & group->bitmask[igroup])
       count += what == VOLUME
           ? set_volume(i, each[i])
-          : set_density(i, what, names[what], each[i], fix_fsi->state[atom->type[i]], forces);
+          : set_density(i, what, names[what], each[i], fix_fsi->disc.state[atom->type[i]], forces);
   const bigint all = count_of(count, world);
   if (all == 0 && comm->me == 0)
     error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", group_name, names[what], given);

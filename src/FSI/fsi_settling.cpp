@@ -15,13 +15,12 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_rows.h"
-#include "fsi_scene.h"
 #include "math_extra.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -34,10 +33,10 @@ static constexpr double SURFACE = 0.9, INSIDE = 0.95;
 static constexpr int POINT = 4;        // of points: position and volume
 static constexpr double SKIN = 0.5;    // of rows, in spacings of the two
 
-Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
-                   const std::vector<Position> &changed) :
+Settling::Settling(LAMMPS *lmp, const Discretization &disc, const StepState &step, Ledger &ledger,
+                   const std::vector<char> &moves, const std::vector<Position> &changed) :
     Pointers(lmp),
-    scene(scene), disc(scene), step(scene), ledger(scene)
+    disc(disc), step(step), ledger(ledger)
 {
   const double of_body = disc.cut + disc.dx, beyond = disc.cut + 1.1 * of_body;
   const Everywhere events(lmp, beyond, changed);
@@ -61,11 +60,11 @@ Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
   }
 }
 
-Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<double> &mobility,
-                   const std::vector<char> &judged, const std::function<void(int)> &bound) :
+Settling::Settling(LAMMPS *lmp, const Discretization &disc, const StepState &step, Ledger &ledger,
+                   const std::vector<double> &mobility, const std::vector<char> &judged,
+                   const std::function<void(int)> &bound) :
     Pointers(lmp),
-    scene(scene), disc(scene), step(scene), ledger(scene), mobility(mobility), judged(judged),
-    bound(bound)
+    disc(disc), step(step), ledger(ledger), mobility(mobility), judged(judged), bound(bound)
 {
 }
 
@@ -239,9 +238,9 @@ template <int D> void Settling::displace()
     MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
     const double length = MathExtra::len3(d);
     if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
-    if (account) *account += scene.potential(i);
+    if (account) *account += step.body_forces.potential(i);
     for (int a = 0; a < D; a++) x[i][a] += d[a];
     if (bound) bound(i);
-    if (account) *account -= scene.potential(i);
+    if (account) *account -= step.body_forces.potential(i);
   }
 }

@@ -14,7 +14,7 @@
 #include "fsi_shear.h"
 
 #include "atom.h"
-#include "fix_fsi.h"
+#include "fsi_fields.h"
 #include "fsi_fluid_terms.h"
 #include "fsi_pair_sets.h"
 
@@ -97,17 +97,9 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
   });
 }
 
-void Shear::init(FixFSI *fix_fsi_in, double eddies_in)
-{
-  eddies = eddies_in;
-  fix_fsi = fix_fsi_in;
-  disc = fix_fsi;
-  step = fix_fsi;
-}
-
 bool Shear::varies() const
 {
-  return eddies > 0.0 || std::any_of(disc->state.begin(), disc->state.end(), [](const State &s) {
+  return eddies > 0.0 || std::any_of(disc.state.begin(), disc.state.end(), [](const State &s) {
            return s.law.varies();
          });
 }
@@ -115,8 +107,8 @@ bool Shear::varies() const
 void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &of_level,
                            const ForceLaws &laws)
 {
-  disc->dim == 2 ? find_gradients<2>(pairs, of_level, laws)
-                 : find_gradients<3>(pairs, of_level, laws);
+  disc.dim == 2 ? find_gradients<2>(pairs, of_level, laws)
+                : find_gradients<3>(pairs, of_level, laws);
 }
 
 template <int D>
@@ -135,7 +127,7 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
     const Visible seen = {visible.data(), rows[0].j};
     if (set.what == PairSet::HIDDEN) in.visible = &seen;
     const bool packs = have_packs() && !in.visible;
-    with_kernel(disc->kernel, D, set.h, [&](const auto &kernel) {
+    with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
       using K = std::decay_t<decltype(kernel)>;
       if constexpr (K::DIM == D) {
         const auto with = [&](auto number) {
@@ -152,10 +144,10 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
       }
     });
   };
-  pairs.for_all(step->walls, of_level[0].points, add);
-  fix_fsi->add_ghosts(sums.data(), ROW);
+  pairs.for_all(step.walls, of_level[0].points, add);
+  ghosts.add(sums.data(), ROW);
   for (int i = 0; i < nlocal; i++) {
-    if (disc->state[type[i]].species != FLUID) continue;
+    if (disc.state[type[i]].species != FLUID) continue;
     const double *const s = &sums[(size_t) ROW * i];
     double B[D * D], C[D * D], *const L = &gradients[(size_t) D * D * i];
     for (int a = 0; a < D; a++)
@@ -173,19 +165,19 @@ double Shear::rate(int i) const
 {
   return std::sqrt(
       2.0 *
-      (disc->dim == 2 ? symmetric<2>(gradient(i)).squared() : symmetric<3>(gradient(i)).squared()));
+      (disc.dim == 2 ? symmetric<2>(gradient(i)).squared() : symmetric<3>(gradient(i)).squared()));
 }
 
 double Shear::viscosity_of(int i) const
 {
-  const State &s = disc->state[atom->type[i]];
-  const double rate_i = rate(i), length = eddies * disc->dx_of(atom->type[i]);
+  const State &s = disc.state[atom->type[i]];
+  const double rate_i = rate(i), length = eddies * disc.dx_of(atom->type[i]);
   return (s.law.varies() ? s.law(rate_i) : s.viscosity) + s.rho0 * length * length * rate_i;
 }
 
 void Shear::stress(int i, double eta, double *sigma) const
 {
-  const int D = disc->dim;
+  const int D = disc.dim;
   const double *const L = gradient(i);
   for (int a = 0; a < D; a++)
     for (int b = a; b < D; b++) sigma[Sym<3>::id(a, b)] = eta * (L[a * D + b] + L[b * D + a]);
@@ -197,8 +189,8 @@ void Shear::find_viscosities(PairSets &pairs, const std::vector<FluidParticles> 
   find_gradients(pairs, of_level, laws);
   viscosity.resize(atom->nlocal + atom->nghost);
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = disc->state[atom->type[i]];
+    const State &s = disc.state[atom->type[i]];
     viscosity[i] = s.species == FLUID ? viscosity_of(i) : s.viscosity;
   }
-  fix_fsi->send_to_ghosts(viscosity.data());
+  ghosts.send(viscosity.data());
 }

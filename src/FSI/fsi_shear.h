@@ -18,22 +18,25 @@
 #define LMP_FSI_SHEAR_H
 
 #include "fsi_fluid_loops.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 #include "pointers.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixFSI;
-
 namespace FSI {
+  class Ghosts;
   class PairSets;
 
   class Shear : protected Pointers {
    public:
-    explicit Shear(LAMMPS *lmp) : Pointers(lmp) {}
     // eddies: C_s of Smagorinsky 1963, which adds rho (C_s dx)^2 times the shear rate; 0: none
-    void init(FixFSI *, double eddies);
+    Shear(LAMMPS *lmp, const Discretization &disc, const StepState &step, Ghosts &ghosts,
+          double eddies) :
+        Pointers(lmp),
+        disc(disc), step(step), ghosts(ghosts), eddies(eddies)
+    {
+    }
     bool varies() const;    // has any fluid such a law, or eddies?
 
     // dv_a/dx_b of local fluid particles, where pairs and points are now: of neighbors, images and
@@ -42,7 +45,7 @@ namespace FSI {
     // (Randles and Libersky 1996). 0 where neighbors are too few.
     void find_gradients(PairSets &, const std::vector<FluidParticles> &of_level,
                         const ForceLaws &laws);
-    const double *gradient(int i) const { return &gradients[(size_t) i * disc->dim * disc->dim]; }
+    const double *gradient(int i) const { return &gradients[(size_t) i * disc.dim * disc.dim]; }
     double rate(int i) const;                               // sqrt(2 D:D)
     void stress(int i, double eta, double *sigma) const;    // 2 eta D, as xx yy zz xy xz yz
 
@@ -57,10 +60,10 @@ namespace FSI {
     }
 
    private:
-    FixFSI *fix_fsi = nullptr;
-    const Discretization *disc = nullptr;
-    StepState *step = nullptr;
-    double eddies = 0.0;
+    const Discretization &disc;
+    const StepState &step;
+    Ghosts &ghosts;
+    const double eddies;
     std::vector<double> sums, gradients, viscosity;
     template <int D>
     void find_gradients(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &);

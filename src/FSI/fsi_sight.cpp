@@ -14,8 +14,8 @@
 #include "fsi_sight.h"
 
 #include "atom.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
-#include "fsi_scene.h"
 #include "math_extra.h"
 #include "neighbor.h"
 
@@ -95,7 +95,7 @@ bool Sight::counts(int type) const
 void Sight::find_bodies()
 {
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
-  const Scene::Row *const x = Scene::rows(atom->x);
+  const Vector *const x = vectors(atom->x);
   per_cell = 1.0 / (disc.cut + neighbor->skin);
   double high[3] = {};
   int count = 0;
@@ -126,7 +126,7 @@ void Sight::find_bodies()
 
 void Sight::follow_bodies()
 {
-  const Scene::Row *const x = Scene::rows(atom->x);
+  const Vector *const x = vectors(atom->x);
   for (auto &place : places) std::copy_n(x[place.i], 3, place.x);
 }
 

@@ -17,24 +17,20 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix.h"
 #include "force.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
-#include "fsi_part.h"
 #include "fsi_record.h"
-#include "fsi_scene.h"
 #include "lmptype.h"
-#include "pair.h"
 #include "universe.h"
 #include "update.h"
 #include "write_restart.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -47,10 +43,11 @@ static std::string of_partition(const Universe *all, const std::string &name)
   return all->nworlds > 1 ? fmt::format("{}.{}", name, all->iworld) : name;
 }
 
-Stop::Stop(LAMMPS *lmp, const std::string &name, const Scene &scene) :
-    Pointers(lmp), name(name), restart_file(of_partition(universe, "fsi_stop.restart")),
-    dump_file(of_partition(universe, "fsi_stop.dump")), disc(scene), step(scene),
-    parts(scene.parts), mover(scene.mover)
+Stop::Stop(LAMMPS *lmp, const std::string &name, const Discretization &disc, const StepState &step,
+           const std::vector<Part *> &parts) :
+    Pointers(lmp),
+    name(name), restart_file(of_partition(universe, "fsi_stop.restart")),
+    dump_file(of_partition(universe, "fsi_stop.dump")), disc(disc), step(step), parts(parts)
 {
 }
 
@@ -279,7 +276,7 @@ void Stop::go_back()
 {
   const double back = -0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & mover->groupbit)
+    if (atom->mask[i] & disc.mover->groupbit)
       for (int d = 0; d < disc.dim; d++) atom->x[i][d] += back * atom->v[i][d];
   for (auto *p : parts) p->go_back();
   update->ntimestep--;

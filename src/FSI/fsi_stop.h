@@ -24,12 +24,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class Fix;
-
 namespace FSI {
-  class Scene;
-  struct Discretization;
-  struct StepState;
 
   // what can be wrong
   enum Trouble { FINITE, MACH, DISTANCE, DENSITY, ENERGY, LOST, NTROUBLE };
@@ -49,7 +44,8 @@ namespace FSI {
     enum Field { FORCE, VELOCITY, MASS_DENSITY, POSITION, MASS };
     enum When { BEFORE, START, MIDDLE };    // of all forces; of a step: where positions are
 
-    Stop(class LAMMPS *, const std::string &name, const Scene &);
+    Stop(class LAMMPS *, const std::string &name, const Discretization &, const StepState &,
+         const std::vector<Part *> &);
     Finding finding(Trouble, int i, double value, int j = -1) const;
     // what of atom i is not finite? No tag if nothing is. With forces, if they are there
     Finding not_finite(int i, bool forces) const;
@@ -65,7 +61,6 @@ namespace FSI {
     const Discretization &disc;
     const StepState &step;
     const std::vector<Part *> &parts;
-    const Fix *const mover;
     // the particle of a solid or wall that a fluid particle is nearest to
     struct Neighbor {
       double distance, dx;

@@ -27,8 +27,6 @@
 #include <fstream>
 #include <map>
 #include <sstream>
-#include <tuple>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FSI;

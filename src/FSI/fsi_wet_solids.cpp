@@ -15,8 +15,8 @@
 
 #include "atom.h"
 #include "compute_fsi_force.h"
-#include "fix_fsi.h"
 #include "force.h"
+#include "fsi_fields.h"
 #include "fsi_fluid_terms.h"
 #include "fsi_kernel.h"
 #include "fsi_pair_sets.h"
@@ -41,7 +41,7 @@ void CutSolids::find_depths(const Walls &walls)
 {
   const auto &wall = walls.wall;
   const int *const type = atom->type, n = wall.size();
-  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   std::vector<double> here(n * (atom->ntypes + 1), -INFINITY), all(here.size()),
       speeds(here.size());
   const auto for_near = [&](auto f) {
@@ -82,7 +82,7 @@ void CutSolids::find(StepState &step)
   find_depths(walls);
   if (!any) return;
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
-  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   parts.assign(nall, 1.0);
   part_rates.assign(nall, 0.0);
   for (int i = 0; i < nall; i++) {
@@ -104,20 +104,12 @@ double CutSolids::memory_usage() const
   return (double) (parts.capacity() + part_rates.capacity()) * sizeof(double);
 }
 
-void LightSolids::init(FixFSI *fix_fsi_in, bool viscous_in)
-{
-  viscous = viscous_in;
-  fix_fsi = fix_fsi_in;
-  disc = fix_fsi;
-  step = fix_fsi;
-}
-
 // of a step with sub-steps: the types that are light
 std::vector<char> LightSolids::types() const
 {
-  const auto &state = disc->state;
+  const auto &state = disc.state;
   const auto layer = [&](int t) {
-    return state[t].rho0 * disc->dx_of(t);
+    return state[t].rho0 * disc.dx_of(t);
   };
   double fluid = 0.0;
   for (int t = 1; t <= atom->ntypes; t++)
@@ -130,12 +122,12 @@ std::vector<char> LightSolids::types() const
 
 bool LightSolids::resisted() const
 {
-  return step->substeps > 1 && (viscous || any());
+  return step.substeps > 1 && (viscous || any());
 }
 
 bool LightSolids::any() const
 {
-  if (step->substeps <= 1) return false;
+  if (step.substeps <= 1) return false;
   const auto light = types();
   return std::find(light.begin(), light.end(), 1) != light.end();
 }
@@ -147,23 +139,23 @@ template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, 
   static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
   const int *const type = atom->type;
   const std::vector<char> light = types();
-  for_levels(*disc, [&](size_t level, const auto &kernel) {
+  for_levels(disc, [&](size_t level, const auto &kernel) {
     const FluidParticles &in = fluid.of_level[level];
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     for (const Row &row : fluid.sets.of(level, PairSet::SOLIDS).rows.rows) {
       const int i = row.i, t = type[row.j[0]];
       if (!light[t] && !viscous) continue;
-      const State &s = disc->state[type[i]];
-      const double z = light[t] * HALF * s.rho0 * s.csq / disc->levels[level].dx * update->dt *
+      const State &s = disc.state[type[i]];
+      const double z = light[t] * HALF * s.rho0 * s.csq / disc.levels[level].dx * update->dt *
           backfill_of(in, i, t);
       const double eta = !viscous
           ? 0.0
-          : backfill_weight_of(in, i, t) * (step->viscosity ? step->viscosity[i] : s.viscosity);
+          : backfill_weight_of(in, i, t) * (step.viscosity ? step.viscosity[i] : s.viscosity);
       for (const int *j = row.j; j < row.j + row.n; j++) {
         double x[D];
         difference(point[i].x, point[*j].x, x);
         const double rsq = product(x, x), r = std::sqrt(rsq);
-        if (rsq >= kernel.cutsq || r == 0.0 || !(atom->mask[*j] & fix_fsi->groupbit)) continue;
+        if (rsq >= kernel.cutsq || r == 0.0 || !(atom->mask[*j] & disc.mover->groupbit)) continue;
         const double v = point[i].vol * point[*j].vol * kernel.gradient(r);
         use(i, *j, x, -2.0 * z * v / r, -4.0 * eta * v);
       }
@@ -173,12 +165,12 @@ template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, 
 
 void LightSolids::find_impedances(const Fluid &fluid)
 {
-  disc->dim == 2 ? find_impedances<2>(fluid) : find_impedances<3>(fluid);
+  disc.dim == 2 ? find_impedances<2>(fluid) : find_impedances<3>(fluid);
 }
 
 template <int D> void LightSolids::find_impedances(const Fluid &fluid)
 {
-  auto *const z = step->impedance, *const w = step->swerve;
+  auto *const z = step.impedance, *const w = step.swerve;
   for (auto *rows : {z, z + 3, w})
     for (int d = 0; d < 3; d++) rows[d].assign(atom->nlocal + atom->nghost, 0.0);
   for_wet_pairs<D>(fluid, [&](int, int j, const double(&x)[D], double k, double eta) {
@@ -186,21 +178,21 @@ template <int D> void LightSolids::find_impedances(const Fluid &fluid)
       for (int b = a; b < D; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b] + (a == b) * eta;
   });
   for (int a = 0; a < D; a++)
-    for (int b = a; b < D; b++) fix_fsi->add_ghosts(z[Sym<3>::id(a, b)].data());
+    for (int b = a; b < D; b++) ghosts.add(z[Sym<3>::id(a, b)].data());
 }
 
 void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *> &measures)
 {
-  disc->dim == 2 ? react<2>(fluid, measures) : react<3>(fluid, measures);
+  disc.dim == 2 ? react<2>(fluid, measures) : react<3>(fluid, measures);
 }
 
 template <int D>
 void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *> &measures)
 {
   std::vector<double> more[D];
-  auto &w = step->swerve;
+  auto &w = step.swerve;
   for (int d = 0; d < D; d++) {
-    fix_fsi->send_to_ghosts(w[d].data());
+    ghosts.send(w[d].data());
     more[d].assign(w[d].size(), 0.0);
   }
   for_wet_pairs<D>(fluid, [&](int i, int j, const double(&x)[D], double k, double) {
@@ -210,11 +202,11 @@ void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *>
         more[a][j] -= k * x[a] * x[b] * w[b][j];
       }
   });
-  for (auto &of : more) fix_fsi->add_ghosts(of.data());
+  for (auto &of : more) ghosts.add(of.data());
   double power = 0.0;    // that on solids is counted in their sub-steps
   for (int i = 0; i < atom->nlocal; i++) {
     const bool counts =
-        (atom->mask[i] & fix_fsi->groupbit) && disc->state[atom->type[i]].species == FLUID;
+        (atom->mask[i] & disc.mover->groupbit) && disc.state[atom->type[i]].species == FLUID;
     double f[3] = {};
     for (int d = 0; d < D; d++) {
       atom->f[i][d] += f[d] = more[d][i];
@@ -224,5 +216,5 @@ void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *>
     }
     for (auto *measure : measures) measure->add_more(i, f);
   }
-  fix_fsi->tally(Ledger::COUPLING, -power);
+  ledger.tally(Ledger::COUPLING, -power);
 }

@@ -18,16 +18,16 @@
 #define LMP_FSI_WET_SOLIDS_H
 
 #include "fsi_fluid_loops.h"
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 #include "pointers.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
 class ComputeFSIForce;
-class FixFSI;
 
 namespace FSI {
+  class Ghosts;
   class PairSets;
 
   // How much of the solids' particles is before mirror walls, and its rate
@@ -55,8 +55,12 @@ namespace FSI {
   // viscous forces; of that fluids have no reaction, which would shake their layer beside solids.
   class LightSolids : protected Pointers {
    public:
-    explicit LightSolids(LAMMPS *lmp) : Pointers(lmp) {}
-    void init(FixFSI *, bool viscous);    // whose group and messages
+    LightSolids(LAMMPS *lmp, const Discretization &disc, StepState &step, Ledger &ledger,
+                Ghosts &ghosts, bool viscous) :
+        Pointers(lmp),
+        disc(disc), step(step), ledger(ledger), ghosts(ghosts), viscous(viscous)
+    {
+    }
     // what its pairs are, and the fluid particles by level as the loop of forces has them
     struct Fluid {
       const PairSets &sets;
@@ -69,10 +73,11 @@ namespace FSI {
     void react(const Fluid &, const std::vector<ComputeFSIForce *> &measures);
 
    private:
-    FixFSI *fix_fsi = nullptr;
-    const Discretization *disc = nullptr;
-    StepState *step = nullptr;
-    bool viscous = false;
+    const Discretization &disc;
+    StepState &step;
+    Ledger &ledger;
+    Ghosts &ghosts;
+    const bool viscous;
     std::vector<char> types() const;
     template <int D, class Use> void for_wet_pairs(const Fluid &, Use) const;
     template <int D> void find_impedances(const Fluid &);

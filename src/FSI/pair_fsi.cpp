@@ -13,7 +13,6 @@
 
 #include "pair_fsi.h"
 
-#include "atom.h"
 #include "atom_vec_fsi.h"
 #include "comm.h"
 #include "error.h"
@@ -36,9 +35,8 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
-    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr),
-    disc(nullptr), step(nullptr), ledger(nullptr), alpha(0.0), beta(0.0), contact_range(1.0),
-    self_contact(0), first_level(0)
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), alpha(0.0), beta(0.0),
+    contact_range(1.0), self_contact(0), first_level(0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -68,7 +66,7 @@ void PairFSI::settings(int narg, char **arg)
 {
   keywords.parse(narg, arg);
   check_settings();
-  fix_fsi = nullptr;
+  disc = nullptr;
 }
 
 // pair_coeff * * file name_1 ... name_ntypes, or the last ones left to levels of fix fsi/refine
@@ -85,7 +83,7 @@ void PairFSI::coeff(int narg, char **arg)
                               avec ? avec->materials : std::map<std::string, std::string>());
   std::copy(found.begin(), found.end(), material.begin() + 1);
   if (keeps) keep_levels();
-  fix_fsi = nullptr;
+  disc = nullptr;
   set_flags();
   check_species();
 }
@@ -178,10 +176,11 @@ std::vector<int> PairFSI::types_of_levels() const
 void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
-  fix_fsi = FixFSI::find(lmp, "Pair style " + style);
-  disc = fix_fsi;
-  step = fix_fsi;
-  ledger = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, "Pair style " + style);
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  ledger = &fix_fsi->ledger;
+  ghosts = &fix_fsi->ghosts;
   if (!fix_fsi->ids_checked) check_ids(lmp, facts_of_solids(lmp).style == Facts::OF_SOLIDS);
   fix_fsi->ids_checked = true;
   const auto all = pairs_of<PairFSI>(lmp);
@@ -197,9 +196,9 @@ void PairFSI::init_style()
             : "");
   check_same_materials();
   drop_reference();
-  if (handles(FLUID, FLUID)) fix_fsi->space_levels(types_of_levels());
+  if (handles(FLUID, FLUID)) fix_fsi->disc.resolve_levels(types_of_levels());
   for (int t = 1; t <= atom->ntypes; t++)
-    if (defines(material[t].species)) fix_fsi->enter_state(t, make_state(material[t]));
+    if (defines(material[t].species)) fix_fsi->disc.enter_state(t, make_state(material[t]));
   if (needs_neighbors())
     neighbor->add_request(this);
   else

@@ -18,10 +18,10 @@
 #define LMP_PAIR_FSI_H
 
 #include "atom.h"
+#include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "fsi_part.h"
-#include "fsi_scene.h"
 #include "pair.h"
 
 #include <string>
@@ -45,16 +45,17 @@ class PairFSI : public Pair, public FSI::Part {
   void *extract(const char *, int &) override;    // "alpha", for fix adapt
   FSI::Facts facts() const override;
   std::vector<Effect> effects() const override = 0;
-  bool is_set_up() const override { return fix_fsi != nullptr; }
+  bool is_set_up() const override { return disc != nullptr; }
   Rank rank() const override { return PAIRS; }
 
  protected:
-  const std::string style;            // for messages
-  FSI::Keywords keywords;             // of settings()
-  class FixFSI *fix_fsi;              // null: not since settings() or coeff()
-  const FSI::Discretization *disc;    // of it, as the next two
-  FSI::StepState *step;
-  FSI::Ledger *ledger;
+  const std::string style;    // for messages
+  FSI::Keywords keywords;     // of settings()
+  // of fix fsi. Null: not since settings() or coeff()
+  const FSI::Discretization *disc = nullptr;
+  FSI::StepState *step = nullptr;
+  FSI::Ledger *ledger = nullptr;
+  FSI::Ghosts *ghosts = nullptr;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
   double alpha, beta;                     // artificial/visc (fsi_pair_laws.h)
   double contact_range;                   // of solids, over dx (fsi_pair_laws.h)

@@ -38,8 +38,8 @@
 #include "update.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -57,16 +57,14 @@ struct PairFSIFluid::Members {
   Fields fields;
   PairSets pairs;
   CutSolids cut_solids;
-  LightSolids light_solids;
-  Shear shear;
-  ImplicitViscosity implicit;
+  // from init_style() on
+  std::optional<LightSolids> light_solids;
+  std::optional<Shear> shear;
+  std::optional<ImplicitViscosity> implicit;
   // what loops get the address of
   Thin thin_bodies = {};
   Visible seen_pairs = {};
-  explicit Members(LAMMPS *lmp) :
-      fields(lmp), pairs(lmp), cut_solids(lmp), light_solids(lmp), shear(lmp), implicit(lmp)
-  {
-  }
+  explicit Members(LAMMPS *lmp) : fields(lmp), pairs(lmp), cut_solids(lmp) {}
 };
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
@@ -276,12 +274,13 @@ void PairFSIFluid::init_style()
                "Fix fsi without a kernel takes the one of preset {}: expected the pair style "
                "before the fix, or the kernel named there",
                PRESETS[preset - 1].name);
-  fix_fsi->find_levels();
+  FixFSI::find(lmp, style)->disc.find_levels();
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.init(*disc, has_solids());
-  members->light_solids.init(fix_fsi, implicit && sticks_to_solids());
-  members->shear.init(fix_fsi, eddies);
-  members->implicit.init(fix_fsi);
+  members->light_solids.emplace(lmp, *disc, *step, *ledger, *ghosts,
+                                implicit && sticks_to_solids());
+  members->shear.emplace(lmp, *disc, *step, *ghosts, eddies);
+  members->implicit.emplace(lmp, *disc, *step, *ghosts);
   step->viscosity = nullptr;
   find_ratios();
   const bool mirrors = any_is(fixes_of<Part>(lmp), &Facts::mirror_walls);
@@ -292,7 +291,7 @@ void PairFSIFluid::init_style()
   if (has_solids() && mirrors && (ghosts == 0.0 || ghosts >= disc->largest_cut))
     ghosts = std::max(ghosts, pairs.beyond_lists() + neighbor->skin);
   raised_ghosts = ghosts;
-  open_ends = fix_fsi->has_open_ends();
+  open_ends = has_open_ends(lmp);
   fix_stress = FixFSIStress::find(lmp);
 }
 
@@ -361,17 +360,17 @@ bool PairFSIFluid::has_all_pairs() const
   return true;
 }
 
-void PairFSIFluid::set_fields(Scene &scene)
+void PairFSIFluid::set_fields(Discretization &of_run)
 {
   if (has_all_pairs()) neighbor->add_request(this);    // after init_style()
-  fields.set("density rate", Fields::STEP, scene.density_fluid == Discretization::CONTINUITY, rate);
-  fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
-  fields.set("fade of shifting", Fields::STEP, shifting > 0.0 && scene.has_levels(), fade);
-  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
-  fields.set("room behind thin bodies", Fields::STEP, scene.sight != nullptr, backfill);
-  fields.set("weight behind thin bodies", Fields::STEP, scene.sight != nullptr, backfill_weight);
-  scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
-  scene.surface_ratio = surface_ratio == 0.0 && scene.article ? 0.9 : surface_ratio;
+  fields.set("density rate", Fields::STEP, disc->density_fluid == Discretization::CONTINUITY, rate);
+  fields.set("shift", Fields::STEP, shifting > 0.0, step->shift, nshift());
+  fields.set("fade of shifting", Fields::STEP, shifting > 0.0 && disc->has_levels(), fade);
+  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, disc->dim + 1);
+  fields.set("room behind thin bodies", Fields::STEP, disc->sight != nullptr, backfill);
+  fields.set("weight behind thin bodies", Fields::STEP, disc->sight != nullptr, backfill_weight);
+  of_run.noslip_walls = of_run.noslip_walls || sticks_to_solids();
+  of_run.surface_ratio = surface_ratio == 0.0 && disc->article ? 0.9 : surface_ratio;
 }
 
 void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
@@ -408,15 +407,15 @@ bool PairFSIFluid::add_rates(bool advance)
   fields.grow();
   if (backfill) {
     pairs.look_past_thin_bodies(backfill, backfill_weight);
-    fix_fsi->send_to_ghosts(backfill);
-    fix_fsi->send_to_ghosts(backfill_weight);
+    ghosts->send(backfill);
+    ghosts->send(backfill_weight);
   }
   members->cut_solids.find(*step);
   if (rate || step->walls.any()) pairs.find_reach(rate != nullptr);
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
   if (step->shifts && nall) std::fill_n(step->shift[0], nall * nshift(), 0.0);
-  const Phase phase(fix_fsi->profile, Profile::DENSITY);
+  const Phase phase(step->profile, Profile::DENSITY);
   if (step->shifts && fade) find_fades();
   if (rate && advance)
     disc->dim == 2 ? add_density_rate<2>(update->dt) : add_density_rate<3>(update->dt);
@@ -429,7 +428,7 @@ bool PairFSIFluid::add_rates(bool advance)
 
 void PairFSIFluid::advance(bool advance)
 {
-  const Phase phase(fix_fsi->profile, Profile::DENSITY);
+  const Phase phase(step->profile, Profile::DENSITY);
   if (beyond) extrapolate_velocities();
   if (!rate || !advance) return;
   advance_density();
@@ -446,7 +445,7 @@ template <class T, class K>
 void PairFSIFluid::add_fades(const K &kernel, const std::vector<Row> &rows, const Visible &seen)
 {
   constexpr int D = K::DIM;
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   const double *const volume = volumes.data();
   double *const sums = fade;
   run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
@@ -500,12 +499,12 @@ void PairFSIFluid::find_fades()
         have_packs() ? add_fades<Pack>(kernel, rows, {}) : add_fades<double>(kernel, rows, {});
     });
   }
-  fix_fsi->add_ghosts(fade);
+  ghosts->add(fade);
   for (int i = 0; i < nlocal; i++) {
     const State &s = disc->state[type[i]];
     if (s.species == FLUID) fade[i] = std::min(1.0, fade[i] / (SLOW * SLOW * s.csq));
   }
-  fix_fsi->send_to_ghosts(fade);
+  ghosts->send(fade);
 }
 
 // continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; rho >= m W(0), the density of an
@@ -538,8 +537,8 @@ std::vector<FluidParticles> PairFSIFluid::particles_of_levels()
 
 void PairFSIFluid::integrate_substeps()
 {
-  if (members->light_solids.resisted())
-    members->light_solids.find_impedances({pairs, particles_of_levels()});
+  if (members->light_solids->resisted())
+    members->light_solids->find_impedances({pairs, particles_of_levels()});
 }
 
 // The ledger's powers have velocities of the start of the step. With those of its middle, which are
@@ -547,8 +546,8 @@ void PairFSIFluid::integrate_substeps()
 // moved since, in sub-steps or with a rigid body, by the way it went.
 void PairFSIFluid::react()
 {
-  if (members->light_solids.any())
-    members->light_solids.react({pairs, particles_of_levels()}, force_computes);
+  if (members->light_solids->any())
+    members->light_solids->react({pairs, particles_of_levels()}, force_computes);
   if (!ledger->kept || taken.empty()) return;
   disc->dim == 2 ? correct_powers<2>() : correct_powers<3>();
 }
@@ -560,7 +559,8 @@ template <int D> void PairFSIFluid::correct_powers()
   const auto *const point = reinterpret_cast<const Point<D> *>(points.data());
   const auto change = [&](int i, int d) {
     const bool waits = disc->state[type[i]].species == FLUID || step->substeps == 1;
-    if (waits && (atom->mask[i] & fix_fsi->groupbit)) return half * atom->f[i][d] / atom->rmass[i];
+    if (waits && (atom->mask[i] & disc->mover->groupbit))
+      return half * atom->f[i][d] / atom->rmass[i];
     const double way = atom->x[i][d] - point[i].x[d];
     return way == 0.0 ? 0.0 : way / dt - 0.5 * point[i].v[d];
   };
@@ -573,7 +573,7 @@ template <int D> void PairFSIFluid::correct_powers()
             : term == Ledger::ARTIFICIAL            ? taken[row_of_points(D) * i + D + d]
             : disc->state[type[i]].species == RIGID ? forces[row_of_forces(D) * i + d]
                                                     : 0.0;
-      fix_fsi->add_ghosts(one.data());
+      ghosts->add(one.data());
       for (int i = 0; i < nlocal; i++) power += one[i] * change(i, d);
     }
     ledger->tally(term, power);
@@ -645,7 +645,7 @@ template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, C
   const int nall = atom->nlocal + atom->nghost;
   if (points.size() < nall * SIZE) points.resize(atom->nmax * SIZE);
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   const double *const rho = atom->rho, *const rmass = atom->rmass;
   for (int i = 0; i < nall; i++) {
     Point<D> &p = point[i];
@@ -667,7 +667,7 @@ template <int D> FluidParticles PairFSIFluid::gather_for_rates(double dth)
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   double *const *const by_shifting = velocity_of_shifting();
   if (by_shifting)
-    for (int d = 0; d < D; d++) fix_fsi->send_to_ghosts(by_shifting[d]);
+    for (int d = 0; d < D; d++) ghosts->send(by_shifting[d]);
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
     if (by_shifting)
       for (int d = 0; d < D; d++) p.v[d] += by_shifting[d][i];
@@ -678,7 +678,7 @@ template <int D> FluidParticles PairFSIFluid::gather_for_rates(double dth)
     if (delta == 0.0) return;
     const State &s = disc->state[type[i]];
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
-    p.pv2 = DensityDiffusion::hydrostatic(fix_fsi->body_forces.of_type[type[i]].data(),
+    p.pv2 = DensityDiffusion::hydrostatic(step->body_forces.of_type[type[i]].data(),
                                           p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });
   // the density of walls is that of the pressures in the last step or setup, which a restart does
@@ -701,7 +701,8 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const FluidParticles particles = gather_for_rates<D>(dth);
   if (ledger->kept || disc->has_levels()) pressure_over_density.resize(atom->nmax);
   if (ledger->kept)
-    for (int i = 0; i < nall; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
+    for (int i = 0; i < nall; i++)
+      pressure_over_density[i] = pressure_of(i, atom, *disc, *step) / atom->rho[i];
 
   RateLaws laws = {delta, pressure_over_density.data(), 0.0, fills(), 0.0};
   double *const shift = step->shifts ? step->shift[0] : nullptr;
@@ -720,8 +721,10 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
                     set.loops->rates(set.kind, rows, mirror, in, laws, rate, shift,
                                      ledger->kept ? &sums : nullptr, near);
                   });
-  const int of_shift = nshift(), last = shift_sums();
-  for (int i = 0; shift && i < nall; i++) rate[i] += shift[of_shift * i + last];
+  // Neighbors' rates ride behind the sums of shifting, which are added to memory in fours: of their
+  // own they would be one more load, addition and store for each pair of the dearest loop.
+  const int row = nshift(), rate_in_row = shift_sums();
+  for (int i = 0; shift && i < nall; i++) rate[i] += shift[row * i + rate_in_row];
   ledger->tally(Ledger::DIFFUSION, sums.diffusion);
   ledger->tally(Ledger::WALLS, sums.walls);
 }
@@ -766,8 +769,8 @@ void PairFSIFluid::add_number_density(double *psi, bool solids_too)
   distance_sums(solids_too, particles_at(nullptr),
                 [&](const PairSet &m, const std::vector<Row> &which, bool both,
                     const Mirror *mirror, const FluidParticles &particles) {
-                  m.loops->number_density(m.kind, which, both, mirror, particles,
-                                          FixFSI::rows(atom->x), psi);
+                  m.loops->number_density(m.kind, which, both, mirror, particles, vectors(atom->x),
+                                          psi);
                 });
 }
 
@@ -778,8 +781,8 @@ void PairFSIFluid::add_position_divergence(double *div)
   distance_sums(false, particles_at(nullptr),
                 [&](const PairSet &m, const std::vector<Row> &which, bool both,
                     const Mirror *mirror, const FluidParticles &particles) {
-                  m.loops->position_divergence(which, both, mirror, particles,
-                                               FixFSI::rows(atom->x), volume.data(), div);
+                  m.loops->position_divergence(which, both, mirror, particles, vectors(atom->x),
+                                               volume.data(), div);
                 });
 }
 
@@ -810,7 +813,7 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
 void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = disc->dim;
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   for_levels(*disc, [&](size_t level, const auto &kernel) {
     for (const Row &row : pairs.of(level, PairSet::SOLIDS).rows.rows)
       for (int k = 0; k < row.n; k++) {
@@ -840,8 +843,8 @@ void PairFSIFluid::extrapolate_velocities()
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
-  FixFSI::check_pre_no(lmp, fix_fsi);
-  const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
+  FixFSI::check_pre_no(lmp, disc);
+  const Phase phase(step->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
 
@@ -859,11 +862,11 @@ ForceLaws PairFSIFluid::laws_of_forces()
   laws.beta = beta;
   laws.laminar = laminar;
   if (laminar == CENTRAL_LAMINAR) laws.central_length_sq = disc->central_length_sq;
-  laws.gravity = fix_fsi->body_forces.of_type.data();
+  laws.gravity = step->body_forces.of_type.data();
   if (extrapolate) laws.extrapolate = laws.gravity;
   laws.stored = disc->density_solid == Discretization::SUMMATION ? 1.0 : 0.0;
   laws.solids_slip = !sticks_to_solids();
-  laws.wall_velocity = FixFSI::rows(step->wall_velocity ? step->wall_velocity : atom->v);
+  laws.wall_velocity = vectors(step->wall_velocity ? step->wall_velocity : atom->v);
   if (fix_stress) laws.stress = fix_stress->stress;
   if (ledger->kept) laws.taken = taken.data();
   laws.viscosity = step->viscosity;
@@ -874,7 +877,7 @@ ForceLaws PairFSIFluid::laws_of_forces()
 // where the last gather() was
 void PairFSIFluid::find_viscosities(const std::vector<FluidParticles> &of_level, ForceLaws &laws)
 {
-  Shear &shear = members->shear;
+  Shear &shear = *members->shear;
   const bool found = laminar && shear.varies();
   if (found) shear.find_viscosities(pairs, of_level, laws);
   step->viscosity = laws.viscosity = found ? shear.viscosities() : nullptr;
@@ -887,8 +890,8 @@ const Shear &PairFSIFluid::find_shear()
                              })
                  : gather<3>(0.0, [](int, Point<3> &) {
                    });
-  members->shear.find_gradients(pairs, particles_of_levels(), laws_of_forces());
-  return members->shear;
+  members->shear->find_gradients(pairs, particles_of_levels(), laws_of_forces());
+  return *members->shear;
 }
 
 // of images: each wall of a reflection has the force along its axis
@@ -917,7 +920,7 @@ template <int D> void PairFSIFluid::compute_forces()
   const bool tally_pairs = vflag_fdotr ? step->walls.any() : evflag != 0;
   const bool own_pressure = disc->surface_ratio > 0.0 || step->wall_stiffness;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
-    p.p = own_pressure ? fix_fsi->pressure(i) : disc->state[type[i]].pressure(p.rho);
+    p.p = own_pressure ? pressure_of(i, atom, *disc, *step) : disc->state[type[i]].pressure(p.rho);
     p.pv2 = p.p * p.vol * p.vol;
   });
 
@@ -953,7 +956,7 @@ template <int D> void PairFSIFluid::compute_forces()
   pairs.forget_near();    // a second force evaluation at other positions must not use these lists
 
   // LAMMPS sends what ghosts have home even without newton_pair, if newton_bond is on
-  auto *const f = FixFSI::rows(atom->f);
+  auto *const f = vectors(atom->f);
   for (int i = 0; i < (force->newton_pair ? nall : atom->nlocal); i++)
     for (int d = 0; d < D; d++) f[i][d] += forces[ROW * i + d];
   ledger->tally(Ledger::ARTIFICIAL, sums.artificial);
@@ -1015,8 +1018,9 @@ void PairFSIFluid::add_implicit_viscosity(const std::vector<FluidParticles> &of_
   const FluidParticles &particles = of_level[0];
   constexpr int ROW = row_of_forces(D);
   std::vector<double> others = forces;
-  fix_fsi->add_ghosts(others.data(), ROW);
-  const std::vector<double> &w = members->implicit.solve(pairs, of_level, laws, others.data(), ROW);
+  ghosts->add(others.data(), ROW);
+  const std::vector<double> &w =
+      members->implicit->solve(pairs, of_level, laws, others.data(), ROW);
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
   for (size_t i = 0; i < w.size() / D; i++)
     for (int d = 0; d < D; d++) point[i].v[d] = w[D * i + d];
@@ -1047,7 +1051,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
                   "couple", has_solids()});
   if (shifting > 0.0 && shift_every > 1)
     list.push_back({fmt::format("shifted every {} steps", shift_every), "shift/every", true});
-  if (fix_fsi && disc->sight)
+  if (disc && disc->sight)
     list.push_back(
         {"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
@@ -1059,6 +1063,6 @@ double PairFSIFluid::memory_usage()
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
       pressure_over_density.capacity();
   return fields.memory_usage() + pairs.memory_usage() + members->cut_solids.memory_usage() +
-      members->shear.memory_usage() + members->implicit.memory_usage() +
+      members->shear->memory_usage() + members->implicit->memory_usage() +
       (double) numbers * sizeof(double);
 }

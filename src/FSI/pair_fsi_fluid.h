@@ -63,7 +63,7 @@ class PairFSIFluid : public PairFSI {
   bool sticks_to_solids() const { return laminar && !solids_slip && has_solids(); }
   double sound_of(const FSI::Material &) const;
 
-  void set_fields(FSI::Scene &) override;
+  void set_fields(FSI::Discretization &) override;
   void add_messages(FSI::Message &, FSI::Message &) override;
   void begin_state(bool) override;    // with new neighbor lists new rows
   bool add_rates(bool) override;

@@ -20,6 +20,7 @@
 #include "force.h"
 #include "fsi_drag.h"
 #include "fsi_gradient.h"
+#include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
 #include "fsi_refusals.h"
@@ -71,7 +72,7 @@ void PairFSIGrain::allocate()
 void PairFSIGrain::settings(int narg, char **arg)
 {
   if (narg > 0) error->all(FLERR, "Pair style fsi/grain takes no arguments, but has {}", arg[0]);
-  fix_fsi = nullptr;
+  disc = nullptr;
 }
 
 void PairFSIGrain::coeff(int narg, char **arg)
@@ -87,7 +88,7 @@ void PairFSIGrain::coeff(int narg, char **arg)
   utils::bounds(FLERR, arg[1], 1, atom->ntypes, from, to, error);
   for (int i = low; i <= high; i++)
     for (int j = from; j <= to; j++) setflag[std::min(i, j)][std::max(i, j)] = 1;
-  fix_fsi = nullptr;
+  disc = nullptr;
 }
 
 void PairFSIGrain::init_style()
@@ -95,9 +96,11 @@ void PairFSIGrain::init_style()
   if (!atom->style_match("fsi") || !atom->radius_flag)
     error->all(FLERR,
                "Pair style fsi/grain requires atom_style hybrid fsi sphere: grains have a radius");
-  fix_fsi = FixFSI::find(lmp, "Pair style fsi/grain");
-  disc = fix_fsi;
-  ledger = fix_fsi;
+  auto *const fix_fsi = FixFSI::find(lmp, "Pair style fsi/grain");
+  disc = &fix_fsi->disc;
+  step = &fix_fsi->step;
+  ledger = &fix_fsi->ledger;
+  ghosts = &fix_fsi->ghosts;
   if (!facts_of_fluids(lmp).style) refuse(error, Refused::GRAINS);
   neighbor->add_request(this);
 }
@@ -138,16 +141,16 @@ std::vector<Part::Effect> PairFSIGrain::effects() const
 
 void PairFSIGrain::compute(int eflag, int vflag)
 {
-  FixFSI::check_pre_no(lmp, fix_fsi);
-  const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
+  FixFSI::check_pre_no(lmp, disc);
+  const Phase phase(step->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   find_grains();
   with_kernel(disc->kernel, disc->dim, disc->h, [this](const auto &kernel) {
     sum_up(kernel);
   });
-  if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
+  if (force->newton_pair) reverse_comm(step->profile, comm, this);
   disc->dim == 2 ? forces<2>() : forces<3>();
-  forward_comm(fix_fsi->profile, comm, this);
+  forward_comm(step->profile, comm, this);
   disc->dim == 2 ? give_back<2>() : give_back<3>();
   if (vflag_fdotr) virial_fdotr_compute();
 }
@@ -181,7 +184,7 @@ template <class K> void PairFSIGrain::sum_up(const K &kernel)
 {
   constexpr int D = K::DIM;
   using Of = Sums<D>;
-  const auto *const v = FixFSI::rows(atom->v);
+  const auto *const v = vectors(atom->v);
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const type = atom->type;
   touches.clear();
@@ -192,7 +195,8 @@ template <class K> void PairFSIGrain::sum_up(const K &kernel)
     const Row row = {i, list->numneigh[i], list->firstneigh[i]};
     for_near(row, atom->x, D, kernel.cutsq, [&](int j, const double *d, double rsq) {
       const int g = grain_first ? i : j, f = grain_first ? j : i;
-      const double w = rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)), p = w * fix_fsi->pressure(f);
+      const double w = rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)),
+                   p = w * pressure_of(f, atom, *disc, *step);
       touches.push_back({f, g, w});
       double *const sum = &sums[(size_t) number[g] * Of::N];
       sum[Of::ONE] += w;
@@ -219,8 +223,8 @@ static constexpr double WIDE = 0.1;    // variance of places over h^2; two, dx =
 template <int D> void PairFSIGrain::forces()
 {
   using Of = Sums<D>;
-  const auto *const v = FixFSI::rows(atom->v);
-  auto *const f = FixFSI::rows(atom->f);
+  const auto *const v = vectors(atom->v);
+  auto *const f = vectors(atom->f);
   for (size_t k = 0; k < grains.size(); k++) {
     const int i = grains[k];
     const double *const sum = &sums[k * Of::N];
@@ -262,7 +266,7 @@ template <int D> void PairFSIGrain::forces()
 // drag acts with the velocities of the start of a step, which must not turn around in it
 void PairFSIGrain::check_step(int i, double drag, double dt) const
 {
-  if (drag * dt <= atom->rmass[i] || !fix_fsi->is_moved(i)) return;
+  if (drag * dt <= atom->rmass[i] || !is_moved(i, lmp)) return;
   error->one(
       FLERR,
       "Pair style fsi/grain: drag stops atom {} of type {}, radius {:g} and mass {:g} within "
@@ -274,8 +278,8 @@ void PairFSIGrain::check_step(int i, double drag, double dt) const
 
 template <int D> void PairFSIGrain::give_back()
 {
-  auto *const f = FixFSI::rows(atom->f);
-  const auto *const x = FixFSI::rows(atom->x);
+  auto *const f = vectors(atom->f);
+  const auto *const x = vectors(atom->x);
   const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
   for (const Touch &touch : touches) {
     const int i = touch.fluid, g = touch.grain;
@@ -302,9 +306,9 @@ void PairFSIGrain::prescribe()
     std::fill(on_fluid.begin(), on_fluid.end(), 0.0);
     for (const Touch &touch : touches)
       on_fluid[touch.fluid] += touch.weight * given[number[touch.grain] * dim + d];
-    fix_fsi->add_ghosts(on_fluid.data());
+    ghosts->add(on_fluid.data());
     for (int i = 0; i < nlocal; i++)
-      if (on_fluid[i] != 0.0 && atom->mask[i] & fix_fsi->groupbit)
+      if (on_fluid[i] != 0.0 && atom->mask[i] & disc->mover->groupbit)
         power += on_fluid[i] * (atom->v[i][d] + half * atom->f[i][d] / atom->rmass[i]);
   }
   ledger->tally(Ledger::COUPLING, power);

@@ -47,15 +47,17 @@ class PairFSIGrain : public Pair, public FSI::Part {
   double memory_usage() override;
 
   FSI::Facts facts() const override;
-  bool is_set_up() const override { return fix_fsi != nullptr; }
+  bool is_set_up() const override { return disc != nullptr; }
   std::vector<Effect> effects() const override;
   Rank rank() const override { return PAIRS; }
   void prescribe() override;
 
  private:
-  class FixFSI *fix_fsi = nullptr;    // null: not since settings() or coeff()
+  // of fix fsi. Null: not since settings() or coeff()
   const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
+  FSI::Ghosts *ghosts = nullptr;
   // of a step: pairs within the support, and how much of the sphere's force the fluid takes, times
   // the sum over all of its fluid
   struct Touch {

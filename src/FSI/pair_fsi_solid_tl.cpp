@@ -44,7 +44,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -125,6 +124,9 @@ State PairFSISolidTL::make_state(const Material &m) const
 void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
+  auto *const fix_fsi = FixFSI::find(lmp, style);
+  clamps = &fix_fsi->clamps;
+  check = &fix_fsi->check;
   check_contact();
   const int dim = disc->dim;
   if (plane_stress && dim == 3) refuse(error, Refused::PLANE_3D);
@@ -179,27 +181,22 @@ const double *const *PairFSISolidTL::history() const
 
 // With sub-steps forces inside the solid come after all fixes have seen those from outside. What
 // adds to these, as fix addforce, is right; what sets or projects the whole force is not.
-bool PairFSISolidTL::takes_substeps() const
-{
-  return step->substeps > 1 || any_is(fixes_of<Part>(lmp), &Facts::chooses_substeps);
-}
-
 void PairFSISolidTL::refuse_constraints() const
 {
   static const char *const styles[] = {"setforce",        "aveforce", "lineforce",
                                        "planeforce",      "freeze",   "manifoldforce",
                                        "damping/cundall", "shake",    "rattle"};
-  if (!takes_substeps()) return;
+  if (!step->takes_substeps(lmp)) return;
   for (auto &fix : modify->get_fix_list())
     for (const char *style : styles) {
       const std::string name = style;
       if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
       const auto held = find_particles(atom, world, [&](int i) {
-        return material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit &&
+        return material[atom->type[i]].species == SOLID && atom->mask[i] & disc->mover->groupbit &&
             atom->mask[i] & fix->groupbit;
       });
       if (held.count)
-        refuse(error, Refused::CONSTRAINED, fix->id, fix->style, held.first, fix_fsi->id);
+        refuse(error, Refused::CONSTRAINED, fix->id, fix->style, held.first, disc->mover->id);
     }
 }
 
@@ -209,10 +206,10 @@ void PairFSISolidTL::refuse_rigid_parts() const
 {
   for (auto &fix : modify->get_fix_list()) {
     if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
-    if (fix_fsi->clamps.known(fix)) continue;
+    if (clamps->known(fix)) continue;
     for (const BondRow &row : rows) {
       const auto elastic = [&](int i) {
-        return atom->mask[i] & fix_fsi->groupbit;
+        return atom->mask[i] & disc->mover->groupbit;
       };
       if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int k) {
             const int j = reference->images.original(k);
@@ -237,8 +234,8 @@ const std::vector<int> &PairFSISolidTL::solids() const
 // forces, energy and virial are seen
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
-  FixFSI::check_pre_no(lmp, fix_fsi);
-  const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
+  FixFSI::check_pre_no(lmp, disc);
+  const Phase phase(step->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
   warn_of_contact();
@@ -278,14 +275,14 @@ void PairFSISolidTL::internal_forces()
   }
   if (!reference->self.pairs.empty())
     disc->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
-  exchange(fix_fsi->profile, comm, [this]() {
+  exchange(step->profile, comm, [this]() {
     reference->swaps.reverse<Pair>(this);
   });
 }
 
 void PairFSISolidTL::find_rows()
 {
-  const int *const type = atom->type, *const mask = atom->mask, groupbit = fix_fsi->groupbit;
+  const int *const type = atom->type, *const mask = atom->mask, groupbit = disc->mover->groupbit;
   changes_seen = reference->changes;
   // of partners, too: a border of ranks may part two materials
   one_material = true;
@@ -307,7 +304,7 @@ void PairFSISolidTL::find_rows()
                     reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),
                     zeta * material[type[i]].young, disc->h_of(type[i])});
   }
-  if (step->substeps > 1 || (update->setupflag && takes_substeps())) refuse_rigid_parts();
+  if (step->substeps > 1 || (update->setupflag && step->takes_substeps(lmp))) refuse_rigid_parts();
   const auto moves = [&](const BondRow &row) {
     return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [&](int j) {
              return mask[images.original(j)] & groupbit;
@@ -327,7 +324,7 @@ template <int D> void PairFSISolidTL::gather_points()
     memory->destroy(fsolid);
     memory->create(fsolid, nmax, row_of_forces(disc->dim), "pair:fsolid");
   }
-  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
+  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   if (points.size() < (size_t) NP * nmax) points.assign((size_t) NP * nmax, 0.0);
   for (const auto *set : {&reference->solids, &reference->ghosts})
     for (const int i : *set)
@@ -350,7 +347,7 @@ template <int D> void PairFSISolidTL::gather_points()
   find_rows();
   if (!smoothed.on()) return;
   const int *const type = types();
-  const int *const mask = atom->mask, groupbit = fix_fsi->groupbit;
+  const int *const mask = atom->mask, groupbit = disc->mover->groupbit;
   smoothed.find_weights<D>(
       rows, type,
       [=](int i) {
@@ -389,7 +386,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
-    exchange(fix_fsi->profile, comm, [this]() {
+    exchange(step->profile, comm, [this]() {
       reference->swaps.forward<Pair>(this, 1);
     });
     for (const auto *set : {&reference->solids, &reference->ghosts})
@@ -402,7 +399,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     images.for_each([&](int k, int of, const Mirror &, bool) {
       smoothed.force[of] += smoothed.force[k];
     });
-    exchange(fix_fsi->profile, comm, [this]() {
+    exchange(step->profile, comm, [this]() {
       reference->swaps.reverse<Pair>(this, 1);
     });
   });
@@ -541,7 +538,7 @@ template <int D> void PairFSISolidTL::contact_forces()
       const Contact &contact = contacts[type[i] * (ntypes + 1) + type[j]];
       if (rsq >= contact.reachsq) continue;
       if (looks && rsq < TOUCHES * contact.reachsq &&
-          ((atom->mask[i] | atom->mask[j]) & fix_fsi->groupbit))
+          ((atom->mask[i] | atom->mask[j]) & disc->mover->groupbit))
         touch = {std::min(molecule[i], molecule[j]), std::max(molecule[i], molecule[j])};
       // without newton the other rank does its own particle
       push<D>(i, j, xij, rsq, contact, newton || j < nlocal ? 1.0 : 0.0);
@@ -604,7 +601,7 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 void PairFSISolidTL::advance_stress(double dt)
 {
   if (!history()) return;
-  const Phase phase(fix_fsi->profile, Profile::STRESS);
+  const Phase phase(step->profile, Profile::STRESS);
   with_law([&](const auto *law_of, auto dimension) {
     using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
@@ -661,7 +658,7 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
 void PairFSISolidTL::break_bonds()
 {
   if (damage <= 0.0) return;
-  const Phase phase(fix_fsi->profile, Profile::STRESS);
+  const Phase phase(step->profile, Profile::STRESS);
   // a fragment with few bonds may be turned inside out, where no law holds
   reference->damage.break_bonds(
       1.0 + damage,
@@ -774,7 +771,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
 // ghosts: positions (and velocities) out, forces back; of solids only
 void PairFSISolidTL::forward_positions()
 {
-  exchange(fix_fsi->profile, comm, [this]() {
+  exchange(step->profile, comm, [this]() {
     reference->swaps.forward<Pair>(this);
   });
 }
@@ -875,14 +872,16 @@ class PairFSISolidTL::Moved : protected Pointers {
 
  public:
   std::vector<int> moving;
-  Moved(LAMMPS *lmp, const FixFSI &fix_fsi, const std::vector<int> &solids) :
-      Pointers(lmp), dim(fix_fsi.dim), profile(fix_fsi.profile)
+  Moved(LAMMPS *lmp, const Discretization &disc, const StepState &step, const Clamps &clamps,
+        const std::vector<int> &solids) :
+      Pointers(lmp),
+      dim(disc.dim), profile(step.profile)
   {
     double **x = atom->x;
     for (const int i : solids)
-      if (atom->mask[i] & fix_fsi.groupbit)
+      if (atom->mask[i] & disc.mover->groupbit)
         moving.push_back(i);
-      else if (!fix_fsi.clamps.has(i)) {
+      else if (!clamps.has(i)) {
         if (profile) held.push_back(i);
         if (MathExtra::lensq3(atom->v[i]) > 0.0)
           carried.push_back({i, {x[i][0], x[i][1], x[i][2]}});
@@ -920,23 +919,22 @@ class PairFSISolidTL::Moved : protected Pointers {
 // round-off.
 void PairFSISolidTL::integrate_substeps()
 {
-  const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
+  const Phase phase(step->profile, Profile::SOLID_FORCES);
   const int substeps = step->substeps;
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
-  Clamps &clamps = fix_fsi->clamps;
-  const bool clamped = clamps.any_elastic();
-  if (clamped) clamps.begin_substeps(solids());
-  const Moved all(lmp, *fix_fsi, solids());
+  const bool clamped = clamps->any_elastic();
+  if (clamped) clamps->begin_substeps(solids());
+  const Moved all(lmp, *disc, *step, *clamps, solids());
   Wet wet(*step, atom, all.moving, dt * force->ftm2v);
   ledger->set_tally(dt);
-  fix_fsi->check.before_substeps(solids());
+  check->before_substeps(solids());
   only_moving = !ledger->kept;
   all.drift(back);
   for (int n = 0; n < substeps; n++) {
     if (n + 1 == substeps) only_moving = false;
     all.drift(dth);
     all.carry(back + n * dt + dth);
-    if (clamped) clamps.drift(dth);
+    if (clamped) clamps->drift(dth);
     forward_positions();
     advance_stress(dt);
     std::fill_n(virial, 6, 0.0);
@@ -946,20 +944,20 @@ void PairFSISolidTL::integrate_substeps()
     all.hold(dt, fsolid);
     all.drift(dth);
     if (!clamped) continue;
-    clamps.kick(dt, fsolid);
-    clamps.drift(dth);
+    clamps->kick(dt, fsolid);
+    clamps->drift(dth);
   }
   all.carry(0.0);
-  fix_fsi->check.after_substeps();
+  check->after_substeps();
   all.hold(-update->dt, fsolid);    // that of the last one is in f from here on
-  if (clamped) clamps.average(substeps, fsolid);
+  if (clamped) clamps->average(substeps, fsolid);
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up
   // already
   if (force->pair != this)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   add_forces();
   if (ledger->kept) ledger->energy_out[Ledger::COUPLING] += wet.taken / force->ftm2v;
-  if (clamped) clamps.finish();
+  if (clamped) clamps->finish();
 }
 
 void PairFSISolidTL::advance(bool advance)
@@ -1001,7 +999,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   if (smoothed.on())
     list.push_back(
         {"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
-  if (fix_fsi && fix_fsi->clamps.any_elastic())
+  if (disc && clamps->any_elastic())
     list.push_back({"sub-steps of rigid parts of solids, with fix rigid", "substeps", true});
   return list;
 }

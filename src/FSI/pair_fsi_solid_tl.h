@@ -29,6 +29,8 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 namespace LAMMPS_NS {
 namespace FSI {
   struct BondRow;
+  class Check;
+  class Clamps;
   struct Contact;
   template <int D> struct PiolaStress;
   class SolidLaws;
@@ -101,6 +103,8 @@ class PairFSISolidTL : public PairFSI {
   enum Volumetric { AUTO, SMOOTHED, LOCAL };
   double zeta, damage;
   int law, plane_stress, linear, plain, volumetric;
+  FSI::Clamps *clamps = nullptr;    // of fix fsi
+  FSI::Check *check = nullptr;
   class FixFSIReference *reference;
   class FixFSIStress *fix_stress;      // null: the law has no rates
   class FixFSIHistory *fix_history;    // null: the law has no history of its own
@@ -109,8 +113,7 @@ class PairFSISolidTL : public PairFSI {
   int nmax;
 
   void refuse_constraints() const;
-  bool takes_substeps() const;    // or may choose to
-  void add_forces();              // to those of all
+  void add_forces();    // to those of all
   void refuse_rigid_parts() const;
   static constexpr double CRUSHED = 0.1;    // of its volume
   double stored(int i) const;

@@ -143,7 +143,7 @@ def test_every_bundled_material_is_on_its_page():
 def test_citation():
     """Fix fsi and doc/roadmap.md name authors, title and version as CITATION.cff does."""
     entry = re.search(r"```text\n(.*?)```", (paths.ROOT / "doc/roadmap.md").read_text(), re.S)[1]
-    code = re.search(r"cite_fsi\[\] =(.*?);", SOURCES["fsi_scene.cpp"].read_text(), re.S)[1]
+    code = re.search(r"cite_fsi\[\] =(.*?);", SOURCES["fix_fsi.cpp"].read_text(), re.S)[1]
     said = "".join(re.findall(r'"(.*?)"', code)).replace("\\n", "\n")
     assert said.partition("\n\n")[2].strip() == entry.strip()
     cff = (paths.ROOT / "CITATION.cff").read_text().partition("\nreferences:")[0]

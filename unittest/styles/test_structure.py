@@ -49,7 +49,7 @@ def test_no_circle():
 
 def test_style_headers_are_bare():
     """LAMMPS' rule: the header of a style includes those of its base classes alone, each of which its class statement names."""
-    names = {"fix": "Fix", "pair": "Pair", "compute": "Compute", "command": "Command", "atom_vec": "AtomVec", "fsi_part": "FSI::Part", "fsi_scene": "FSI::Scene",
+    names = {"fix": "Fix", "pair": "Pair", "compute": "Compute", "command": "Command", "atom_vec": "AtomVec", "fsi_part": "FSI::Part",
              "pair_fsi": "PairFSI", "fsi_fields": "FSI::FixFields", "fsi_bond_store": "FSI::BondStore"}
     styles, more = 0, {}
     for file in paths.sources("*.h").values():
@@ -65,6 +65,12 @@ def test_style_headers_are_bare():
 def test_fix_fsi_knows_no_style():
     assert [name for name in includes("fix_fsi") if re.match(r"(fix|pair|compute)_", name)] == []
     assert len(SOURCES["fix_fsi.cpp"].read_text().splitlines()) < 450
+
+
+def test_no_style_keeps_fix_fsi():
+    """Styles and parts of a step take objects from fix fsi when a run begins: none keeps the fix, to call it back in a step."""
+    headers = [file for file in SOURCES.values() if file.suffix == ".h" and file.name != "fix_fsi.h"]
+    assert len(headers) > 80 and [file.name for file in headers if re.search(r"\bFixFSI\b", file.read_text())] == []
 
 
 def test_the_classic_package_is_apart():

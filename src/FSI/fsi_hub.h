@@ -11,13 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What everybody reads of a simulation, in three parts: what is the same in a whole run, what a
-// step has, and the energy balance. Fix fsi is a Scene and fills it in; whoever only reads takes a
-// Scene, or the part that it needs, and need not know fix fsi.
+// What those that take part in a step share: what is the same in a whole run, what a step has, and
+// the balance of energy. Fix fsi has these objects; a style takes those that it needs once, when a
+// run begins, const where it only reads, and keeps no pointer to the fix.
 
-#ifndef LMP_FSI_SCENE_H
-#define LMP_FSI_SCENE_H
+#ifndef LMP_FSI_HUB_H
+#define LMP_FSI_HUB_H
 
+#include "fix.h"
 #include "fsi_body_forces.h"
 #include "fsi_material.h"
 #include "fsi_walls.h"
@@ -27,8 +28,8 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Atom;
 class Domain;
-class Fix;
 class LAMMPS;
 
 namespace FSI {
@@ -56,7 +57,11 @@ namespace FSI {
 
   // Constant from init() on. Of itself the resolution of the coarsest fluid.
   struct Discretization : Resolution {
-    int article;    // the article's scheme: what it sets where a style says nothing else
+    Discretization(const Fix *mover, int ntypes) : mover(mover), state(ntypes + 1) {}
+    Discretization(const Discretization &) = delete;
+
+    const Fix *const mover;    // fix fsi, whose group is what it moves
+    int article;               // the article's scheme: what it sets where a style says nothing else
     enum Density { CONTINUITY, SUMMATION, RATIO };
     static std::vector<std::string> density_names(int species);    // of these
     int density_fluid, density_solid;                              // Density
@@ -82,13 +87,16 @@ namespace FSI {
     // name none
     std::vector<std::string> begin(LAMMPS *, const Keywords &, std::vector<std::string> words);
     bool kernel_named;
-    // h over dx; spacings that differ from dx, by type, or 0
-    void resolve(double hdx, const std::vector<double> &spacing);
-    // the same with these types of the fluid's levels, from the coarsest on, where none is given
-    void resolve_levels(double hdx, std::vector<double> spacing, const std::vector<int> &types);
+    double hdx;                           // h over dx
+    std::vector<double> given_spacing;    // those that differ from dx, by type, or 0
+    void resolve() { resolve(given_spacing); }
+    // with these types of the fluid's levels, from the coarsest on, where none is given
+    void resolve_levels(const std::vector<int> &types);
 
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;
+    bool states_entered = false;    // in this init()
+    void enter_state(int type, const State &);
     bool several_stiffnesses() const;    // do fluids differ in rho0 c^2?
     std::vector<int> types_of_levels;    // the first fluid, and those left to fix fsi/refine
     std::vector<double> thin;        // per atom type, 1: fluids do not see each other through it
@@ -99,6 +107,9 @@ namespace FSI {
     // Free-surface rule: p = 0 where psi is below this part of the largest one of fluids; 0: off
     double surface_ratio = 0.0;
     bool need_psi = false;    // for any mode or rule
+
+   private:
+    void resolve(const std::vector<double> &spacing);
   };
 
   // a skin of 0.4 spacings, in place of the one that LAMMPS has before any command neighbor
@@ -106,7 +117,13 @@ namespace FSI {
 
   // Of one step.
   struct StepState {
-    int substeps = 1;    // of total-Lagrangian solids: as given or chosen by fix fsi/dt
+    explicit StepState(LAMMPS *lmp) : body_forces(lmp) {}
+    StepState(const StepState &) = delete;
+
+    BodyForces body_forces;
+    Profile *profile = nullptr;    // of fix fsi/report; null: there is none
+    int substeps = 1;              // of total-Lagrangian solids: as given or chosen by fix fsi/dt
+    bool takes_substeps(LAMMPS *) const;    // or may take
     // what moves by rates between the middles of two steps takes update->dt + dt_offset: their
     // distance, if dt changes
     double dt_offset = 0.0;
@@ -114,6 +131,8 @@ namespace FSI {
     double psi_reference = 0.0;            // of the free-surface rule
     Walls walls;                           // at the time of the positions in atom->x
     std::vector<WallForce> wall_forces;    // on each of them, counted by its fix
+    void gather_walls(LAMMPS *);           // from all fixes fsi/wall/mirror, where they are now
+    void find_near_walls(const Atom *, const Discretization &);    // wmask
     // f on the fluid
     void add_wall_force(int wall, int axis, double f) { wall_forces[wall][axis] -= f; }
     // A total-Lagrangian solid that this step found turned inside out, det F <= 0: -1 if there is
@@ -162,46 +181,21 @@ namespace FSI {
     double tally_dt = 0.0;
   };
 
-  class Scene : public Discretization, public StepState, public Ledger {
-   public:
-    Scene(LAMMPS *, const Fix *fix_fsi);
-    Scene(const Scene &) = delete;
+  // Of local or ghost atom i: its pressure from its density (paper eq. 16), 0 at a free surface if
+  // that rule is on; its compressive energy
+  double pressure_of(int i, const Atom *, const Discretization &, const StepState &);
+  double stored(int i, const Atom *, const Discretization &);
+  // the energy that it takes is in the balance
+  void set_density(int i, double rho, Atom *, const Discretization &, Ledger &, Ledger::Term);
+  bool is_moved(int i, const LAMMPS *);    // by fix fsi or by another that integrates
 
-    const Fix *const mover;    // fix fsi, whose group is what it moves
-    // what takes part in a step, in the order of its calls; from init() on
-    std::vector<Part *> parts;
-    BodyForces body_forces;
-    Profile *profile = nullptr;    // of fix fsi/report; null: there is none
-    std::string announced;         // the list of effects as last printed
-
-    void enter_state(int type, const State &);
-    bool density_follows_shift() const;
-    bool has_open_ends() const;    // fixes fsi/inlet and fsi/outlet
-
-    // Of a local or ghost atom
-    // from its density (paper eq. 16), 0 at a free surface if that rule is on
-    double pressure(int i) const;
-    double density_ratio(int i) const;    // rho/rho0; not of a total-Lagrangian solid
-    double potential(int i) const;        // gravitational energy at the positions in atom->x
-    double stored(int i) const;           // compressive energy
-    void set_density(int i, double rho, Term);    // the energy that it takes is in the balance
-    bool is_total_lagrangian(int i) const;
-    bool is_moved(int i) const;    // by fix fsi or by another that integrates
-
-    // the rows of a per-atom array, which LAMMPS allocates in one piece, without the way through
-    // its pointers to them
-    typedef double Row[3];
-    static Row *rows(double **a) { return reinterpret_cast<Row *>(a[0]); }
-
-    void gather_walls();    // one list from all fixes fsi/wall/mirror, where they are now
-
-   protected:
-    void find_near_walls();         // wmask
-    bool states_entered = false;    // in this init()
-
-   private:
-    LAMMPS *const instance;
-  };
+  // the rows of a per-atom array, which LAMMPS allocates in one piece, without the way through its
+  // pointers to them
+  typedef double Vector[3];
+  inline Vector *vectors(double **a)
+  {
+    return reinterpret_cast<Vector *>(a[0]);
+  }
 
   // The shortest of a difference's periodic images, as Domain::minimum_image() gives it, whose
   // arguments differ between releases of LAMMPS; boxes are orthogonal

@@ -11,14 +11,12 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_scene.h"
+#include "fsi_hub.h"
 
 #include "atom.h"
-#include "citeme.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix.h"
 #include "fsi_find.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
@@ -27,7 +25,6 @@
 #include "lammps.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -37,20 +34,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static const char cite_fsi[] = "FSI package: fluid-structure interaction by SPH\n\n"
-                               "@Misc{FSI,\n"
-                               " author = {{The authors of the FSI package for LAMMPS}},\n"
-                               " title = {FSI package for LAMMPS},\n"
-                               " note = {Version 0.9}\n"
-                               "}\n\n";
-
-Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) : mover(fix_fsi), body_forces(lmp), instance(lmp)
-{
-  if (lmp->citeme) lmp->citeme->add(cite_fsi);
-  state.resize(lmp->atom->ntypes + 1);
-}
-
-void Discretization::resolve(double hdx, const std::vector<double> &spacing)
+void Discretization::resolve(const std::vector<double> &spacing)
 {
   const auto resolution_of = [&](double own) {
     Resolution r;
@@ -79,14 +63,14 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
   }
 }
 
-void Discretization::resolve_levels(double hdx, std::vector<double> spacing,
-                                    const std::vector<int> &types)
+void Discretization::resolve_levels(const std::vector<int> &types)
 {
   types_of_levels = types;
+  std::vector<double> spacing = given_spacing;
   for (size_t k = 1; k < types.size(); k++)
     if (spacing[types[k]] == 0.0)
       spacing[types[k]] = dx_of(types[0]) * std::pow(2.0, -(double) k / dim);
-  if (types.size() > 1) resolve(hdx, spacing);
+  if (types.size() > 1) resolve(spacing);
 }
 
 std::vector<std::string> Discretization::begin(LAMMPS *lmp, const Keywords &keywords,
@@ -115,7 +99,7 @@ void FSI::choose_skin(LAMMPS *lmp, double dx)
         lmp, "Fix fsi: neighbor skin {:g}, 0.4 spacings; command neighbor sets another\n", skin);
 }
 
-void Scene::enter_state(int type, const State &s)
+void Discretization::enter_state(int type, const State &s)
 {
   if (!states_entered) state.assign(state.size(), State());
   states_entered = true;
@@ -144,27 +128,31 @@ void Discretization::find_levels()
       if (state[t].species == FLUID && dx_of(t) == levels[l].dx) level_of[t] = l;
 }
 
-void Scene::gather_walls()
+bool StepState::takes_substeps(LAMMPS *lmp) const
+{
+  return substeps > 1 || any_is(fixes_of<Part>(lmp), &Facts::chooses_substeps);
+}
+
+void StepState::gather_walls(LAMMPS *lmp)
 {
   walls.wall.clear();
   wall_forces.clear();
-  for (auto *p : parts) p->add_walls(walls, wall_forces);
+  for (auto *p : fixes_of<Part>(lmp)) p->add_walls(walls, wall_forces);
   if (walls.wall.size() > Walls::MAXWALL)
-    instance->error->all(FLERR, "There are {} mirror walls, more than the {} supported",
-                         walls.wall.size(), Walls::MAXWALL);
+    lmp->error->all(FLERR, "There are {} mirror walls, more than the {} supported",
+                    walls.wall.size(), Walls::MAXWALL);
   walls.find_reflections();
 }
 
 // walls of particles go on behind a mirror themselves
-void Scene::find_near_walls()
+void StepState::find_near_walls(const Atom *atom, const Discretization &disc)
 {
-  const Atom *const atom = instance->atom;
   const int nall = atom->nlocal + atom->nghost;
-  const Row *const x = rows(atom->x);
-  const InnerBox inner(walls.wall, cut);
+  const Vector *const x = vectors(atom->x);
+  const InnerBox inner(walls.wall, disc.cut);
   for (int i = 0; i < nall; i++) {
-    const bool none = inner.contains(x[i]) || state[atom->type[i]].species == RIGID;
-    wmask[i] = none ? 0 : walls.near(x[i], cut);
+    const bool none = inner.contains(x[i]) || disc.state[atom->type[i]].species == RIGID;
+    wmask[i] = none ? 0 : walls.near(x[i], disc.cut);
   }
 }
 
@@ -172,19 +160,6 @@ std::vector<std::string> Discretization::density_names(int species)
 {
   if (species == FLUID) return {"continuity", "summation"};
   return {"continuity", "summation", "ratio"};
-}
-
-bool Scene::density_follows_shift() const
-{
-  return facts_of_fluids(instance).density_follows_shift;
-}
-
-bool Scene::has_open_ends() const
-{
-  const auto fixes = fixes_of<Part>(instance);
-  return std::any_of(fixes.begin(), fixes.end(), [](const Part *p) {
-    return p->rank() == Part::OPEN_ENDS;
-  });
 }
 
 bool Discretization::several_stiffnesses() const
@@ -201,59 +176,47 @@ bool Discretization::several_stiffnesses() const
   return false;
 }
 
-double Scene::pressure(int i) const
+double FSI::pressure_of(int i, const Atom *atom, const Discretization &disc, const StepState &step)
 {
-  const Atom *const atom = instance->atom;
-  const State &s = state[atom->type[i]];
-  if (s.species == FLUID && surface_ratio > 0.0 && psi[i] <= surface_ratio * psi_reference)
+  const State &s = disc.state[atom->type[i]];
+  if (s.species == FLUID && disc.surface_ratio > 0.0 &&
+      step.psi[i] <= disc.surface_ratio * step.psi_reference)
     return 0.0;
-  if (s.species == RIGID && wall_stiffness)
-    return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
+  if (s.species == RIGID && step.wall_stiffness)
+    return std::max(s.floor, s.p0 + step.wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
   return s.pressure(atom->rho[i]);
 }
 
-double Scene::density_ratio(int i) const
+double FSI::stored(int i, const Atom *atom, const Discretization &disc)
 {
-  return instance->atom->rho[i] / state[instance->atom->type[i]].rho0;
+  return atom->rmass[i] * disc.state[atom->type[i]].energy(atom->rho[i]);
 }
 
-// gravity may pull through a periodic face
-double Scene::potential(int i) const
+void FSI::set_density(int i, double rho, Atom *atom, const Discretization &disc, Ledger &ledger,
+                      Ledger::Term term)
 {
-  const Atom *const atom = instance->atom;
-  double x[3];
-  instance->domain->unmap(atom->x[i], atom->image[i], x);
-  const auto g = body_forces.on(i);
-  return -atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+  const double before = ledger.kept ? stored(i, atom, disc) : 0.0;
+  atom->rho[i] = rho;
+  if (ledger.kept) ledger.energy_out[term] += before - stored(i, atom, disc);
 }
 
-double Scene::stored(int i) const
-{
-  const Atom *const atom = instance->atom;
-  return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
-}
-
-void Scene::set_density(int i, double rho, Term term)
-{
-  const double before = kept ? stored(i) : 0.0;
-  instance->atom->rho[i] = rho;
-  if (kept) energy_out[term] += before - stored(i);
-}
-
-bool Scene::is_total_lagrangian(int i) const
-{
-  return state[instance->atom->type[i]].form == TOTAL_LAGRANGIAN;
-}
-
-bool Scene::is_moved(int i) const
+bool FSI::is_moved(int i, const LAMMPS *lmp)
 {
   // not get_fix_list(), which makes the list anew: who asks in set_arrays() is called from a loop
   // over it
-  const Modify *const modify = instance->modify;
+  const Modify *const modify = lmp->modify;
   for (int k = 0; k < modify->nfix; k++)
-    if (modify->fix[k]->time_integrate && instance->atom->mask[i] & modify->fix[k]->groupbit)
+    if (modify->fix[k]->time_integrate && lmp->atom->mask[i] & modify->fix[k]->groupbit)
       return true;
   return false;
+}
+
+bool FSI::has_open_ends(const LAMMPS *lmp)
+{
+  const auto fixes = fixes_of<Part>(lmp);
+  return std::any_of(fixes.begin(), fixes.end(), [](const Part *p) {
+    return p->rank() == Part::OPEN_ENDS;
+  });
 }
 
 static Facts facts_of(LAMMPS *lmp, Facts::Style least, Facts::Style most)
