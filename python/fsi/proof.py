@@ -12,6 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from . import launch, paths
+from .check import spelled_out
 
 STEPS = 100
 FEWER = 10  # of decks with so many particles that more would take minutes
@@ -37,7 +38,7 @@ def decks():
 
 def begun(text, steps, head):
     """The deck up to its first run, which takes some steps and leaves a restart file."""
-    before = re.split(r"^\s*run\s+(?!0\b)", text, maxsplit=1, flags=re.M)[0]
+    before = re.split(r"^\s*run\s+(?!0\b)", spelled_out(text), maxsplit=1, flags=re.M)[0]
     return f"{head}{before}\nrun {steps}\nwrite_restart left.restart\n"
 
 
