@@ -67,7 +67,7 @@ class ComputeFSIProbe : public Compute {
     // of a solid, per atom: weight in the fit, 0 of most, and unwrapped place when it was taken
     class FixStoreAtom *kept = nullptr;
     bool taken = false;
-    double u[3];
+    double u[3] = {};
 
     int size() const { return n[0] * n[1] * n[2]; }
     double along(int d, const double *x) const;    // where x is on grid axis d, in steps
