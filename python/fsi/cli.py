@@ -240,7 +240,8 @@ def _columns(table, wanted, source):
 
 
 def _key(table, name):
-    return next((k for k in (name, f"v_{name}", f"c_{name}", f"f_{name}") if k in table), None)
+    """LAMMPS writes its own column time as Time."""
+    return next((k for k in (name, f"v_{name}", f"c_{name}", f"f_{name}", name.capitalize()) if k in table), None)
 
 
 def _show(table, wanted, source, options):

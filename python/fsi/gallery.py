@@ -36,10 +36,12 @@ def date(version):
 
 
 def scrubbed(text):
-    """A log without the places of this machine, and what is said of progress every few seconds; a / after a number, a variable or a bracket
-    divides."""
+    """A log without the places of this machine, what to cite, histograms over ranks, and what is said of progress every few seconds; a / after a
+    number, a variable or a bracket divides."""
     text = text.replace(f"{paths.ROOT}/", "").replace(str(paths.ROOT), ".")
     text = re.sub(r"  fsi/pack: \d+ of .*\n", "", text)
+    text = re.sub(r"Histogram: .*\n|[ \t]+$", "", text, flags=re.M)
+    text = re.sub(r"\nCITE-.*?\nCITE-\S+\n\n", "", text, flags=re.S)
     return re.sub(r"(?<![\w.)}\]])/(?:[\w.+-]+/)+", "", text)
 
 

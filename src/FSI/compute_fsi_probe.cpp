@@ -17,11 +17,16 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_store_atom.h"
+#include "fsi_gather.h"
+#include "fsi_gradient.h"
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_sight.h"
+#include "group.h"
 #include "memory.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -32,12 +37,14 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr double MOST = 1.0e7;    // points of one place
+static constexpr double REACH = 2.0;     // of a fit in spacings: it has enough at a corner, too
+static constexpr double INDEPENDENCE = 0.05;    // a direction has it with two rows or more
 
 ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1)
 {
-  static const std::vector<std::string> names = {"p",  "rho",  "vx",    "vy",
-                                                 "vz", "fill", "level", "wet"};
+  static const std::vector<std::string> names = {"p",     "rho", "vx", "vy", "vz", "fill",
+                                                 "level", "wet", "ux", "uy", "uz"};
   int iarg = 3;
   while (iarg < narg) {
     const std::string word = arg[iarg++];
@@ -59,9 +66,17 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
   if (places.empty()) error->all(FLERR, "Compute fsi/probe needs a place: point, patch or line");
   for (const int q : quantity)
     for (const auto &place : places)
-      if (place.line != (q == LEVEL || q == WET))
+      if (std::max(q, quantity[0]) >= UX) {
+        if (std::min(q, quantity[0]) < UX || !std::equal(place.from, place.from + 3, place.to))
+          error->all(FLERR, "Compute fsi/probe ux, uy, uz need points, and no other quantity");
+      } else if (place.line != (q == LEVEL || q == WET))
         error->all(FLERR, "Compute fsi/probe {} needs {}", names[q],
                    place.line ? "a point or a patch, not a line" : "a line");
+
+  create_attribute = quantity[0] >= UX;
+  for (size_t k = 0; k < places.size() && create_attribute; k++)
+    places[k].kept = dynamic_cast<FixStoreAtom *>(modify->add_fix(
+        fmt::format("{}_FSI_{} {} STORE/ATOM 4 0 0 1", id, k, group->names[igroup])));
 
   const int rows = places.size(), columns = quantity.size();
   if (rows * columns == 1) {
@@ -107,6 +122,8 @@ int ComputeFSIProbe::read_place(const std::string &kind, int narg, char **arg)
 
 ComputeFSIProbe::~ComputeFSIProbe()
 {
+  for (const auto &place : places)
+    if (place.kept && modify->nfix) modify->delete_fix(place.kept->id);
   if (vector_flag) memory->destroy(vector);
   if (array_flag) memory->destroy(array);
 }
@@ -126,6 +143,23 @@ void ComputeFSIProbe::init()
           for (int d = 0; d < 3; d++)
             points.push_back(place.origin[d] + a * place.step[0][d] + b * place.step[1][d] +
                              c * place.step[2][d]);
+  }
+}
+
+void ComputeFSIProbe::set_arrays(int i)
+{
+  for (const auto &place : places) std::fill_n(place.kept->astore[i], 4, 0.0);
+}
+
+// points of solids: once, where the first run finds them; a restart file has what was taken
+void ComputeFSIProbe::setup()
+{
+  for (auto &place : places) {
+    if (!place.kept) continue;
+    for (int i = 0; i < atom->nlocal; i++) place.taken |= place.kept->astore[i][0] != 0.0;
+    place.taken = anywhere(place.taken, world);
+    if (!place.taken) take(place);
+    place.taken = true;
   }
 }
 
@@ -343,7 +377,6 @@ void ComputeFSIProbe::sum_up()
       step->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
   std::vector<double> at(points);
   const std::vector<int> mask = walls_near(walls, at);
-
   for (size_t level = 0; level < disc->levels.size(); level++)
     with_kernel(disc->kernel, disc->dim, disc->levels[level].h, [&](const auto &kernel) {
       add_level(level, kernel, walls, at, mask);
@@ -355,6 +388,7 @@ void ComputeFSIProbe::sum_up()
 // counts as 0
 double ComputeFSIProbe::field(const Place &place, int k) const
 {
+  if (place.kept) return place.u[quantity[k] - UX];
   double mean = 0.0;
   for (int m = 0; m < place.size(); m++) {
     const double *const sum = &all[(size_t) (place.first + m) * nsums];
@@ -394,12 +428,92 @@ double ComputeFSIProbe::level(const Place &place, bool wet) const
   return (wet ? length : top) * std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
 }
 
+// A particle of a fit to a solid: r from the point, or its displacement
+struct ComputeFSIProbe::Fitted {
+  tagint tag, body;
+  double weight, r[3];
+  bool operator<(const Fitted &other) const { return tag < other.tag; }
+};
+
+// in an order in which sums are the same on any number of ranks
+std::vector<ComputeFSIProbe::Fitted> ComputeFSIProbe::gather_fit(std::vector<Fitted> fit) const
+{
+  fit = gather(fit, world);
+  std::sort(fit.begin(), fit.end());
+  return fit;
+}
+
+// weights that give fields which are linear in place at the point; they fall to 0 at the reach
+void ComputeFSIProbe::take(const Place &place)
+{
+  std::vector<Fitted> fit;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int type = atom->type[i], species = disc->state[type].species;
+    if (!(atom->mask[i] & groupbit) || (species != SOLID && species != RIGID)) continue;
+    Fitted one = {atom->tag[i], atom->molecule[i], 1.0, {}};
+    for (int d = 0; d < disc->dim; d++) one.r[d] = atom->x[i][d] - place.from[d];
+    to_nearest_image(*domain, one.r);
+    for (double &r : one.r) {
+      r /= REACH * disc->dx_of(type);
+      one.weight -= r * r;
+    }
+    if (one.weight > 0.0) fit.push_back(one);
+  }
+  fit = gather_fit(fit);
+  if (fit.empty())
+    error->all(FLERR, "Compute fsi/probe {}: no solid of group {} within {} spacings of {} {} {}",
+               id, group->names[igroup], REACH, place.from[0], place.from[1], place.from[2]);
+  const Fitted *nearest = fit.data();
+  for (const auto &one : fit)
+    if (one.weight > nearest->weight) nearest = &one;
+  double moments[packed_size(4)] = {}, row[4];
+  for (auto &one : fit) {
+    if (one.body != nearest->body) one.weight = 0.0;
+    const double phi[] = {1.0, one.r[0], one.r[1], one.r[2]};
+    for (int a = 0, k = 0; a < 4; a++)
+      for (int b = 0; b <= a; b++) moments[k++] += one.weight * phi[a] * phi[b];
+  }
+  gradient_coefficients<1, 4>(moments, row, INDEPENDENCE);
+  for (auto &one : fit)
+    one.weight *= row[0] + row[1] * one.r[0] + row[2] * one.r[1] + row[3] * one.r[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    for (const auto &one : fit)
+      if (atom->tag[i] == one.tag) {
+        place.kept->astore[i][0] = one.weight;
+        domain->unmap(atom->x[i], atom->image[i], place.kept->astore[i] + 1);
+      }
+}
+
+void ComputeFSIProbe::displace(Place &place) const
+{
+  std::vector<Fitted> fit;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const kept = place.kept->astore[i];
+    if (kept[0] == 0.0) continue;
+    Fitted one = {atom->tag[i], 0, kept[0], {}};
+    domain->unmap(atom->x[i], atom->image[i], one.r);
+    for (int d = 0; d < 3; d++) one.r[d] -= kept[d + 1];
+    fit.push_back(one);
+  }
+  double sum = 0.0;
+  std::fill_n(place.u, 3, 0.0);
+  for (const auto &one : gather_fit(fit)) {
+    sum += one.weight;
+    for (int d = 0; d < 3; d++) place.u[d] += one.weight * one.r[d];
+  }
+  if (std::fabs(sum - 1.0) > 1.0e-9)
+    error->all(FLERR, "Compute fsi/probe {} {}", id,
+               place.taken ? "has lost particles around its point" : "needs a run before it");
+}
+
 void ComputeFSIProbe::evaluate(double *result)
 {
-  sum_up();
-  for (const auto &place : places)
+  if (quantity[0] < UX) sum_up();
+  for (auto &place : places) {
+    if (place.kept) displace(place);
     for (size_t k = 0; k < quantity.size(); k++)
       *result++ = place.line ? level(place, quantity[k] == WET) : field(place, k);
+  }
 }
 
 double ComputeFSIProbe::compute_scalar()

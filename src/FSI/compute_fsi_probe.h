@@ -34,20 +34,22 @@ namespace FSI {
 
 // Gauges: the fluid's fields interpolated at points and over patches, and its level along lines.
 // Each rank sums over its own particles, a reduction does the rest; particles near a place are
-// listed as seldom as neighbors are.
+// listed as seldom as neighbors are. Displacements are those of points of solids, by linear fits.
 
 class ComputeFSIProbe : public Compute {
  public:
   ComputeFSIProbe(class LAMMPS *, int, char **);
   ~ComputeFSIProbe() override;
   void init() override;
+  void setup() override;
+  void set_arrays(int i) override;
   double compute_scalar() override;
   void compute_vector() override;
   void compute_array() override;
   double memory_usage() override;
 
  private:
-  enum Quantity { P, RHO, VX, VY, VZ, FILL, LEVEL, WET };
+  enum Quantity { P, RHO, VX, VY, VZ, FILL, LEVEL, WET, UX, UY, UZ };
   std::vector<int> quantity;
   bool extrapolate;
 
@@ -62,6 +64,10 @@ class ComputeFSIProbe : public Compute {
     int n[3] = {}, first = 0;    // first: index of its first point among all
     double origin[3] = {}, step[3][3] = {};
     std::vector<std::vector<Particle>> near;    // by level of the scene
+    // of a solid, per atom: weight in the fit, 0 of most, and unwrapped place when it was taken
+    class FixStoreAtom *kept = nullptr;
+    bool taken = false;
+    double u[3] = {};
 
     int size() const { return n[0] * n[1] * n[2]; }
     double along(int d, const double *x) const;    // where x is on grid axis d, in steps
@@ -89,6 +95,10 @@ class ComputeFSIProbe : public Compute {
   void add(const Place &, const Source &, double weight, double head, const double *v, double *sum);
   void sum_up();
   void evaluate(double *result);
+  struct Fitted;
+  std::vector<Fitted> gather_fit(std::vector<Fitted>) const;
+  void take(const Place &);
+  void displace(Place &) const;
   double field(const Place &, int k) const;
   double level(const Place &, bool wet) const;
 };

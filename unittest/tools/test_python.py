@@ -232,7 +232,9 @@ def test_one_column_is_drawn_over_the_time(tmp_path, monkeypatch, capsys):
     (tmp_path / "tip.csv").write_text("t,tip\n0,1\n2,3\n")
     cli.main(["log", str(tmp_path / "log.lammps"), "tip", "plot=a.png"])
     cli.main(["series", str(tmp_path / "tip.csv"), "tip", "plot=a.png"])
-    assert drawn == [("time", "tip", [[0, 0.5]], [[3, 4]]), ("t", "tip", [[0, 2]], [[1, 3]])]
+    (tmp_path / "log.lammps").write_text((tmp_path / "log.lammps").read_text().replace("v_time", "Time"))
+    cli.main(["log", str(tmp_path / "log.lammps"), "time", "tip", "plot=a.png"])
+    assert drawn == [("time", "tip", [[0, 0.5]], [[3, 4]]), ("t", "tip", [[0, 2]], [[1, 3]]), ("time", "tip", [[0, 0.5]], [[3, 4]])]
     (tmp_path / "one.csv").write_text("t\n0\n2\n")
     with pytest.raises(SystemExit, match="one column only"):
         cli.main(["series", str(tmp_path / "one.csv"), "plot=a.png"])
