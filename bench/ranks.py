@@ -131,7 +131,8 @@ def page(rows):
     """The page's text."""
     lines = ["# Many ranks", "",
              "What a rank has and sends does not grow with the number of ranks, if the scene grows with them.",
-             "Floating bodies are the exception: each rank reduces 96 bytes of each body in a step.", "",
+             "There are two exceptions. Each rank reduces 96 bytes of each floating body in a step.",
+             "An open end gathers on its ranks what it makes at once, at the start its whole buffer.", "",
              f"- Each rank has one cell of {EDGE} particles along an edge. The table is of the busiest rank.",
              "- *Messages*, *bytes* and *reduced* are those of a step, without new neighbor lists. *Reduced* are bytes of collective calls.",
              f"- *Difference* is the largest one from the same scene on one rank after {STEPS} steps.",
