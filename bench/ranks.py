@@ -130,13 +130,11 @@ COLUMNS = ("scene", "ranks", "particles", "ghosts", "messages", "bytes", "collec
 def page(rows):
     """The page's text."""
     lines = ["# Many ranks", "",
-             "What a rank has and sends does not grow with the number of ranks, if the scene grows with them.",
-             "There are two exceptions. Each rank reduces 96 bytes of each floating body in a step.",
-             "An open end gathers on its ranks what it makes at once, at the start its whole buffer.", "",
-             f"- Each rank has one cell of {EDGE} particles along an edge. The table is of the busiest rank.",
-             "- *Messages*, *bytes* and *reduced* are those of a step, without new neighbor lists. *Reduced* are bytes of collective calls.",
-             f"- *Difference* is the largest one from the same scene on one rank after {STEPS} steps.",
-             "- All ranks share two cores, so nothing is timed: `tools/cost ranks`.", "",
+             f"The scene grows with the ranks: each has a cell of {EDGE} particles along an edge (`tools/cost ranks`).",
+             "The table is of the busiest rank. No step has new neighbor lists.",
+             f"*Reduced*: bytes of collective calls. *Difference*: the largest from one rank, after {STEPS} steps.", "",
+             "Two things grow. Each rank reduces 96 bytes of each floating body.",
+             "An open end gathers what it makes at once, at the start its whole buffer.", "",
              "| cell | ranks | ghosts | messages | bytes | reduced | memory | difference |", "|---|---:|---:|---:|---:|---:|---:|---:|"]
     lines += [f"| {r['scene']} | {r['ranks']:.0f} | {r['ghosts']:,.0f} | {r['messages']:.1f} | {r['bytes']:,.0f} | {r['reduced']:,.0f} | {r['memory'] / 2**20:.0f} MB "
               f"| {r['difference']:.0e} |" for r in rows]

@@ -263,11 +263,11 @@ def page(rows, pairs, more=()):
              "The package runs on any number of MPI ranks and gives the same forces to round-off.",
              "Two ranks are timed (`tools/cost peers`). Of more, work and messages are counted (`tools/cost scaling`).", "",
              "![Bytes of a particle](scaling.png)", "",
-             "- Bytes of a particle are those of still water in 3D, Wendland 1.5, skin 0.3 dx, in a cube with five walls, on one rank.",
-             "- Temporary memory: the peak of the process, when it writes the restart file, minus the other rows.",
-             "- Set-up: CPU time from the start of the program to the first step, with all checks. Restart files: wall-clock time.",
-             "- Scenes on 2 to 16 ranks and a model of 10^4 ranks are in [scaling.csv](scaling.csv).",
-             "- Balance: a dam break in a tank that is half empty, 1,250 particles, two ranks, 0.5 s.",
+             "- Bytes of a particle: still water in 3D, Wendland 1.5, skin 0.3 dx, five walls, one rank.",
+             "- Temporary memory: the peak, at writing the restart file, minus the other rows.",
+             "- Set-up: CPU time from the start to the first step. Restart files: wall-clock time.",
+             "- 2 to 16 ranks, and a model of 10^4: [scaling.csv](scaling.csv).",
+             "- Balance: a dam break in a half-empty tank, 1,250 particles, two ranks.",
              "- With the box cut in halves two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
              *more, "", "| quantity | value |", "|---|---:|"]
     lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in pairs if r["what"].startswith("2 ranks") and r["ratio"] is not None]
