@@ -9,7 +9,7 @@ import measure
 import numpy as np
 from tool import Job, say
 
-from fsi import dump
+from fsi import dump, plot
 from fsi.command import start
 
 EDGE = 12  # particles along the edge of a cell
@@ -127,12 +127,25 @@ def measured(kept, kind, ranks):
 COLUMNS = ("scene", "ranks", "particles", "ghosts", "messages", "bytes", "collectives", "reduced", "memory", "difference")
 
 
+def draw(path, rows):
+    """Bytes that a rank sends in a step, by kind of scene and number of ranks."""
+    with plot.picture(path, 7.2, 1.9) as figure:
+        axes = figure.add_subplot()
+        for k, (ranks, colour) in enumerate(zip(RANKS, (plot.BLUE, plot.ORANGE, plot.GREEN))):
+            axes.bar([n + 0.25 * (k - 1) for n in range(len(KINDS))], [r["bytes"] / 1e3 for r in rows if r["ranks"] == ranks], 0.22, color=colour, label=f"{ranks} ranks")
+        axes.set_xticks(range(len(KINDS)), [kind.replace(" through", "\nthrough") for kind in KINDS], fontsize=8)
+        axes.set(ylabel="kB of a rank and step")
+        axes.grid(axis="x", visible=False)
+        figure.legend(loc="upper center", ncol=3, fontsize=7.5, frameon=False)
+        figure.tight_layout(rect=(0, 0, 1, 0.92))
+
+
 def page(rows):
     """The page's text."""
     lines = ["# Many ranks", "",
              f"The scene grows with the ranks: each has a cell of {EDGE} particles along an edge (`tools/cost ranks`).",
              "The table is of the busiest rank. No step has new neighbor lists.",
-             f"*Reduced*: bytes of collective calls. *Difference*: the largest from one rank, after {STEPS} steps.", "",
+             f"*Reduced*: bytes of collective calls. *Difference*: the largest from one rank, after {STEPS} steps.", "", "![Bytes that a rank sends](ranks.png)", "",
              "Two things grow. Each rank reduces 96 bytes of each floating body.",
              "An open end gathers what it makes at once, at the start its whole buffer.", "",
              "| cell | ranks | ghosts | messages | bytes | reduced | memory | difference |", "|---|---:|---:|---:|---:|---:|---:|---:|"]
@@ -150,6 +163,7 @@ def main(arguments):
         for ranks in RANKS:
             rows.append({"scene": kind, "ranks": ranks, **measured(job.kept, kind, ranks)})
             say("cost: " + "; ".join(f"{rows[-1][name]:.4g} {name}" if name != "scene" else kind for name in COLUMNS))
+    draw(job.folder / "ranks.png", rows)
     job.write(COLUMNS, rows, 6, page(rows))
     return 0
 

@@ -169,6 +169,7 @@ def draw():
     evidence.draw_named(PAGE / "named.png")
     effects.draw(PAGE / "effects.png", read_csv(PAGE / "effects.csv"))
     peers.draw(PAGE / "peers.png", read_csv(PAGE / "peers.csv"))
+    ranks.draw(PAGE / "ranks.png", read_csv(PAGE / "ranks.csv"))
     scaling.draw(PAGE / "scaling.png", read_csv(PAGE / "scaling.csv"))
     hard_pages.draw_hard(evidence.HARD / "hard.png")
     hard_pages.draw_readme(evidence.HARD / "hard_readme.png")

@@ -64,8 +64,9 @@ def scenes_of(page):
 
 
 def packed(found):
-    """results.json as text, a line for each figure."""
-    return re.sub(r"\{[^{}\[\]]*\}", lambda m: re.sub(r"\s*\n\s*", " ", m[0]), json.dumps(found, indent=1)) + "\n"
+    """results.json as text, a line for each figure, numbers to nine digits."""
+    text = re.sub(r"-?\d+\.\d{9,}(?:e[-+]\d+)?\b", lambda m: f"{float(m[0]):.9g}", json.dumps(found, indent=1))
+    return re.sub(r"\{[^{}\[\]]*\}", lambda m: re.sub(r"\s*\n\s*", " ", m[0]), text) + "\n"
 
 
 def judged(entry):

@@ -284,7 +284,7 @@ def test_deck_of_ones_own(tmp_path, monkeypatch, capsys):
         rows = {row["label"]: row for row in csv.DictReader(line for line in file if not line.startswith("#"))}
     assert (rows["kind a, h = 0.25"]["status"], rows["kind a, h = 0.25"]["value"], rows["kind a, h = 0.25"]["error"]) == ("reference", "1.1875", "")
     assert float(rows["kind a, h = 0.5"]["value"]) == 1.75 and float(rows["kind a, h = 0.5"]["error"]) == pytest.approx(1.75 / 1.1875 - 1)
-    assert "Reference: the finest run of 'kind a', 1.1875. It is no truth from outside." in (out / "page.md").read_text()
+    assert "Reference: the finest run of 'kind a', 1.1875. It is not an independent reference." in (out / "page.md").read_text()
     # a formula of the deck can be replaced; points are others, so nothing is mixed up
     assert accuracy_cost.main([*words, "offset=1"]) == 0
     assert json.loads((out / "summary.json").read_text())["reference"]["value"] == pytest.approx(2.0, abs=1e-3)
