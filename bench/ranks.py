@@ -146,7 +146,7 @@ def page(rows):
              f"The scene grows with the ranks: each has a cell of {EDGE} particles along an edge (`tools/cost ranks`).",
              "The table is of the busiest rank. No step has new neighbor lists.",
              f"*Reduced*: bytes of collective calls. *Difference*: the largest from one rank, after {STEPS} steps.", "", "![Bytes that a rank sends](ranks.png)", "",
-             "Two things grow. Each rank reduces 96 bytes of each floating body.",
+             "Each rank reduces 96 bytes of each floating body.",
              "An open end gathers what it makes at once, at the start its whole buffer.", "",
              "| cell | ranks | ghosts | messages | bytes | reduced | memory | difference |", "|---|---:|---:|---:|---:|---:|---:|---:|"]
     lines += [f"| {r['scene']} | {r['ranks']:.0f} | {r['ghosts']:,.0f} | {r['messages']:.1f} | {r['bytes']:,.0f} | {r['reduced']:,.0f} | {r['memory'] / 2**20:.0f} MB "

@@ -260,7 +260,7 @@ def side_by_side(rows):
 def page(rows, pairs, more=()):
     """The page's text; pairs: rows of tools/cost peers, of which those of two ranks; more: points of its list."""
     lines = ["# Several ranks", "",
-             "The package runs on any number of MPI ranks and gives the same forces to round-off.",
+             "Forces are the same on any number of MPI ranks, to round-off.",
              "Two ranks are timed (`tools/cost peers`). Of more, work and messages are counted (`tools/cost scaling`).", "",
              "![Bytes of a particle](scaling.png)", "",
              "- Bytes of a particle: still water in 3D, Wendland 1.5, skin 0.3 dx, five walls, one rank.",
