@@ -465,7 +465,7 @@ class Result:
         return [line for line in self.output.splitlines() if "ERROR" in line]
 
 
-def lammps(folder, text, ranks=1, timeout=120, arguments=(), build=None, environment=(), **files):
+def lammps(folder, text, ranks=1, timeout=600, arguments=(), build=None, environment=(), **files):
     """Runs LAMMPS on an input text; build: the folder of another LAMMPS; files: contents by name, _ for the dot before the ending."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
