@@ -9,7 +9,7 @@ import numpy as np
 from tool import figures_of, left, say
 
 from fsi import log, paths, scene, series, sweep
-from fsi.command import Refusal, split, start
+from fsi.command import Refusal, number, split, start
 
 OPTIONS = ("out", "budget", "limit", "repeats", "draw", "source")
 BASE_CFL = 0.25
@@ -176,10 +176,7 @@ def parse(arguments):
             assigned.append(argument)
     options, settings = split(assigned, OPTIONS)
     for name in ("budget", "limit", "repeats"):
-        try:
-            options[name] = {"repeats": int}.get(name, float)(options[name]) if name in options else None
-        except ValueError:
-            raise Refusal(f"{name}={options[name]}: a number is needed") from None
+        options[name] = number(name, options[name], int if name == "repeats" else float) if name in options else None
     return what, options, settings, vary, measure
 
 

@@ -106,7 +106,7 @@ def state(kind, cells, ranks):
         measure.run(Path(name), text, ranks)
         frame = dump.read(Path(name) / "end.dump")[-1]
     found = np.column_stack([frame[column] for column in frame.columns])
-    return found[np.argsort(found[:, :3] @ np.sqrt([1.0, 0.3, 0.07]))]  # by place, along no row: IDs are given rank by rank
+    return found[np.argsort(found[:, :3] @ np.sqrt([1.0, 0.3, 0.07]))]  # by place, along no row: new IDs are given rank by rank
 
 
 def difference(kind, ranks):

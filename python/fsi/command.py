@@ -25,10 +25,10 @@ def whole(name, value):
     return int(value)
 
 
-def number(name, value):
+def number(name, value, kind=float):
     """An option's value as a number."""
     try:
-        return float(value)
+        return kind(value)
     except ValueError:
         raise Refusal(f"{name}={value}: a number is needed") from None
 
