@@ -70,7 +70,7 @@ struct FixFSI::Members {
   Frame frame;
 
   Members(LAMMPS *lmp, FixFSI &fix) :
-      disc(&fix, lmp->atom->ntypes), step(lmp), ghosts(lmp, fix, disc.state, step.profile),
+      disc(&fix, lmp->atom->ntypes), step(lmp, parts), ghosts(lmp, fix, disc.state, step.profile),
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, disc, step, parts), changes(lmp),
       population(lmp, disc, step), number_density(lmp, disc, step, ghosts, parts),
       clamps(lmp, disc, step), surface_deficit(lmp, disc, step, ledger, number_density),

@@ -137,7 +137,7 @@ void StepState::gather_walls(LAMMPS *lmp)
 {
   walls.wall.clear();
   wall_forces.clear();
-  for (auto *p : fixes_of<Part>(lmp)) p->add_walls(walls, wall_forces);
+  for (auto *p : parts) p->add_walls(walls, wall_forces);
   if (walls.wall.size() > Walls::MAXWALL)
     lmp->error->all(FLERR, "There are {} mirror walls, more than the {} supported",
                     walls.wall.size(), Walls::MAXWALL);

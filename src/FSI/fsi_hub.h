@@ -117,7 +117,7 @@ namespace FSI {
 
   // Of one step.
   struct StepState {
-    explicit StepState(LAMMPS *lmp) : body_forces(lmp) {}
+    StepState(LAMMPS *lmp, const std::vector<Part *> &parts) : body_forces(lmp), parts(parts) {}
     StepState(const StepState &) = delete;
 
     BodyForces body_forces;
@@ -158,6 +158,9 @@ namespace FSI {
     double *wall_stiffness = nullptr;    // rho dp/drho of wall particles, that of the fluid around
                                          // them; null: it is the same for all fluids, and in the
                                          // wall's state
+
+   private:
+    const std::vector<Part *> &parts;    // what takes part in a step
   };
 
   // Energy balance (compute fsi/energy): what each term took from the particles' energy since fix
