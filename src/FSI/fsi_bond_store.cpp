@@ -180,13 +180,46 @@ void BondStore::end_taking()
 // the particle that is meant: local, or the ghost that is near; -1: beyond the ghosts, too
 int BondStore::find_partner(int i, tagint tag) const
 {
-  int j = atom->map(tag);
-  if (j < 0 || !is_periodic()) return j;
-  j = domain->closest_image(i, j);
+  const int j = atom->map(tag);
+  return j < 0 || !is_periodic() ? j : image_at(atom->x[i], j);
+}
+
+// of atom j; -1: a ghost that is not here
+int BondStore::image_at(const double *place, int j) const
+{
+  j = domain->closest_image(place, j);
   for (int a = 0; a < domain->dimension; a++)
-    if (domain->periodicity[a] && std::fabs(atom->x[j][a] - atom->x[i][a]) > 0.5 * domain->prd[a])
+    if (domain->periodicity[a] && std::fabs(atom->x[j][a] - place[a]) > 0.5 * domain->prd[a])
       return -1;
   return j;
+}
+
+// A bond stretched past half a period has another image of its partner nearest to i: the one that
+// is meant is where the deformation gradient puts it.
+void BondStore::follow_long_bonds(int i, int *of_i) const
+{
+  double **x = atom->x;
+  const int n = count(i), D = domain->dimension;
+  for (int a = 0; a < D; a++) {
+    if (!domain->periodicity[a]) continue;
+    const auto span = [&](int k) {
+      return of_i[k] < 0 ? 0.0 : x[of_i[k]][a] - x[i][a];
+    };
+    double row[3] = {};    // of F
+    bool all_short = true;
+    for (int k = 0; k < n; k++) {
+      all_short = all_short && std::fabs(span(k)) < 0.25 * domain->prd[a];
+      for (int c = 0; c < D; c++) row[c] += span(k) * bond(i, k)[c * BOND_BLOCK];
+    }
+    for (int k = 0; k < n && !all_short; k++) {
+      if (of_i[k] < 0) continue;
+      const double *const xj = x[of_i[k]];
+      double place[3] = {xj[0], xj[1], xj[2]};
+      place[a] = x[i][a];
+      for (int c = 0; c < D; c++) place[a] += row[c] * bond(i, k)[(D + c) * BOND_BLOCK];
+      of_i[k] = image_at(place, atom->map(atom->tag[of_i[k]]));
+    }
+  }
 }
 
 void BondStore::resolve()
@@ -204,9 +237,11 @@ void BondStore::resolve()
                  tag[i]);
     solids.push_back(i);
     int *const of_i = &local[first(i)], n = count(i);
+    for (int k = 0; k < n; k++) of_i[k] = find_partner(i, partner_tags(i)[k]);
+    if (is_periodic()) follow_long_bonds(i, of_i);
     for (int k = 0; k < n; k++) {
       const tagint t = partner_tags(i)[k];
-      const int j = find_partner(i, t), bits = planes(i, k);
+      const int j = of_i[k], bits = planes(i, k);
       if (j < 0)
         error->one(FLERR,
                    "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them "

@@ -139,6 +139,8 @@ namespace FSI {
     int new_slot(int n);
     int pack(int i, double *buf) const;
     int find_partner(int i, tagint) const;
+    int image_at(const double *place, int j) const;
+    void follow_long_bonds(int i, int *of_i) const;
     template <int D> void complete_as(int i);
     template <int D> bool renew_as(int i);
   };
