@@ -142,6 +142,7 @@ Record FixFSI::record() const
   Record record(lmp, "fix fsi");
   members->keywords.write(record);
   check.write(record);
+  step.write(record);
   population.write(record);
   return record;
 }
@@ -223,13 +224,11 @@ void FixFSI::init()
 {
   if (fixes_of<FixFSI>(lmp).size() > 1) error->all(FLERR, "There can be only one fix fsi");
   check.before_init();
-  step.dt_offset = 0.0;
   changes.begin_run();
   disc.states_entered = false;
   clock.restore();
   find_parts();
-  step.shift = nullptr;
-  for (auto &row : step.impedance) row.clear();
+  step.begin_run();
   disc.noslip_walls = false;
   disc.surface_ratio = 0.0;
   for (auto *p : parts) p->set_fields(disc);
@@ -304,6 +303,7 @@ void FixFSI::initial_integrate(int)
 {
   changes.check_pre_no();
   for (auto *p : parts) p->start_step();
+  step.begin(update->dt);
   members->frame.move();
   if (fresh_start()) {
     next_reneighbor = update->ntimestep;
@@ -421,14 +421,14 @@ void FixFSI::write_restart(FILE *fp)
 // with the kernel of the particles' masses
 bool FixFSI::goes_on(const Record &record, const std::string &when)
 {
-  Keywords &keywords = members->keywords;
-  keywords.compare(record, when);
+  members->keywords.compare(record, when);
   check.read(record);
+  step.read(record);
   population.read(record);
-  const bool other_h = keywords.differs(record, "smoothing length over spacing");
-  const bool other_kernel = other_h || keywords.differs(record, "kernel");
-  if (other_kernel &&
-      (disc.density_fluid == disc.SUMMATION || disc.density_solid == disc.SUMMATION))
+  const bool other_kernel = members->keywords.differs(record, "kernel") ||
+      members->keywords.differs(record, "smoothing length over spacing");
+  const bool sums = disc.density_fluid == disc.SUMMATION || disc.density_solid == disc.SUMMATION;
+  if (other_kernel && sums)
     error->all(FLERR,
                "Fix fsi: density mode summation must keep kernel and smoothing length, for "
                "which the masses of its particles were made");

@@ -219,7 +219,7 @@ void FixFSIDt::post_run()
 // order on its own: positions and velocities need no more care. What lives at the middle of
 // steps, the density of continuity and the stress of fsi/solid, goes from t^n - dt_old/2 to t^n
 // + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
-// first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from dt_offset.
+// first order, (dt_new - dt_old)/2 times the rate: StepState::dt_offset.
 // (The rates' positions, dt/2 v before those in atom->x, are of the new step, as they should.)
 // Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the
 // end of the last step.
@@ -237,7 +237,6 @@ void FixFSIDt::start_step()
     output->reset_dt();
     update->ntimestep++;
   }
-  step->dt_offset = dt > 0.0 ? 0.5 * (dt - update->dt) : 0.0;
   dt = update->dt;
 }
 

@@ -22,6 +22,7 @@
 #include "fsi_keywords.h"
 #include "fsi_part.h"
 #include "fsi_preset.h"
+#include "fsi_record.h"
 #include "lammps.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -126,6 +127,34 @@ void Discretization::find_levels()
   for (size_t t = 1; t < state.size(); t++)
     for (size_t l = 0; l < levels.size(); l++)
       if (state[t].species == FLUID && dx_of(t) == levels[l].dx) level_of[t] = l;
+}
+
+void StepState::begin_run()
+{
+  shift = nullptr;
+  for (auto &row : impedance) row.clear();
+}
+
+void StepState::begin(double dt)
+{
+  const double sub = dt / substeps;
+  dt_offset = last_dt > 0.0 ? 0.5 * (last_dt - dt) : 0.0;
+  substep_offset = last_dt > 0.0 ? 0.5 * (last_sub - sub) : 0.0;
+  last_dt = dt;
+  last_sub = sub;
+}
+
+void StepState::write(Record &record) const
+{
+  record.add("last step", std::vector<double>{last_dt, last_sub});
+}
+
+void StepState::read(const Record &record)
+{
+  if (!record.has("last step")) return;
+  const auto list = record.numbers("last step");
+  last_dt = list[0];
+  last_sub = list[1];
 }
 
 bool StepState::takes_substeps(LAMMPS *lmp) const

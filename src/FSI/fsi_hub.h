@@ -36,6 +36,7 @@ namespace FSI {
   class Keywords;
   class Part;
   class Profile;
+  class Record;
   class Sight;
 
   // How finely an atom type is resolved: the spacing of its lattice, and what follows from it. The
@@ -124,9 +125,14 @@ namespace FSI {
     Profile *profile = nullptr;    // of fix fsi/report; null: there is none
     int substeps = 1;              // of total-Lagrangian solids: as given or chosen by fix fsi/dt
     bool takes_substeps(LAMMPS *) const;    // or may take
-    // what moves by rates between the middles of two steps takes update->dt + dt_offset: their
-    // distance, if dt changes
-    double dt_offset = 0.0;
+    // What moves by rates between the middles of two steps takes update->dt + dt_offset: their
+    // distance, where dt has changed, by a command between runs, too. substep_offset: likewise of
+    // sub-steps, the first of this step and the last one before.
+    double dt_offset = 0.0, substep_offset = 0.0;
+    void begin_run();
+    void begin(double dt);
+    void write(Record &) const;
+    void read(const Record &);
     bool shifts = false;                   // is it one of the steps that have shifting?
     double psi_reference = 0.0;            // of the free-surface rule
     Walls walls;                           // at the time of the positions in atom->x
@@ -160,7 +166,8 @@ namespace FSI {
                                          // wall's state
 
    private:
-    const std::vector<Part *> &parts;    // what takes part in a step
+    const std::vector<Part *> &parts;        // what takes part in a step
+    double last_dt = 0.0, last_sub = 0.0;    // of the last step taken and of its sub-steps; 0: none
   };
 
   // Energy balance (compute fsi/energy): what each term took from the particles' energy since fix

@@ -598,7 +598,8 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
   }
 }
 
-void PairFSISolidTL::advance_stress(double dt)
+// dt: of this step or sub-step; since: the middle of the last one
+void PairFSISolidTL::advance_stress(double dt, double since)
 {
   if (!history()) return;
   const Phase phase(step->profile, Profile::STRESS);
@@ -606,9 +607,9 @@ void PairFSISolidTL::advance_stress(double dt)
     using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
     if constexpr (L::BY_RATE)
-      advance_rates<D>(dt);
+      advance_rates<D>(dt, since);
     else if constexpr (!L::HISTORY.empty())
-      advance_history<L, D>(law_of, dt);
+      advance_history<L, D>(law_of, since);
   });
 }
 
@@ -632,7 +633,7 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
 }
 
 // L = F' F^-1 at the time of the velocities, half a step before the positions
-template <int D> void PairFSISolidTL::advance_rates(double dt)
+template <int D> void PairFSISolidTL::advance_rates(double dt, double since)
 {
   gather_points<D>();
   const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
@@ -647,7 +648,7 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
         for (int c = 0; c < D; c++)
           for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
       const State &s = disc->state[atom->type[i]];
-      const double work = fix_stress->advance_stress<D>(i, L, dt, s, ledger->kept);
+      const double work = fix_stress->advance_stress<D>(i, L, since, s, ledger->kept);
       if (ledger->kept)
         ledger->energy_out[Ledger::INELASTIC] += work * row.volume * determinant<D>(F);
     }
@@ -936,7 +937,7 @@ void PairFSISolidTL::integrate_substeps()
     all.carry(back + n * dt + dth);
     if (clamped) clamps->drift(dth);
     forward_positions();
-    advance_stress(dt);
+    advance_stress(dt, n ? dt : dt + step->substep_offset);
     std::fill_n(virial, 6, 0.0);
     internal_forces();
     all.kick(dt, fsolid);
@@ -964,7 +965,7 @@ void PairFSISolidTL::advance(bool advance)
 {
   if (!advance) return;
   break_bonds();
-  if (step->substeps == 1) advance_stress(update->dt);
+  if (step->substeps == 1) advance_stress(update->dt, update->dt + step->substep_offset);
 }
 
 Facts PairFSISolidTL::facts() const

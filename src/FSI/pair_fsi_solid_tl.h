@@ -76,7 +76,7 @@ class PairFSISolidTL : public PairFSI {
   void forward_positions();
   // stress or history of a law that has one, from the middle of one step to that of the next, where
   // positions are; velocities are those of the time between
-  void advance_stress(double dt);
+  void advance_stress(double dt, double since);
   void break_bonds();    // keyword damage
   const std::vector<int> &solids() const;
   // of this rank's particles at the last forces; kept for compute fsi/energy
@@ -153,7 +153,7 @@ class PairFSISolidTL : public PairFSI {
   void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
   template <class L, int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
   template <int D> void deformation(int i, double *F) const;
-  template <int D> void advance_rates(double dt);
+  template <int D> void advance_rates(double dt, double since);
   template <class L, int D> void advance_history(const L *law_of, double dt);
 };
 

@@ -87,6 +87,7 @@ FACTORS = {
         "delete, no compress": {"between": "delete_atoms group spot compress no", "settings": {"spot": True}},
         "fsi/set": {"between": "fsi/set water density 1000.5"},
         "redefined": {"between": "{again}"},
+        "timestep": {"between": "timestep 1.3e-4"},
         "write_restart": {"between": "write_restart between.restart"},
     },
     "symmetry": {"no plane": {}, "symmetry plane": {"settings": {"plane": True}}},

@@ -45,6 +45,7 @@ class PairScene:
     newton: str = "on"
     dt: float = DT
     energy: bool = False
+    counted: bool = False    # lists are built at the very end
 
     @cached_property
     def has(self):
@@ -352,12 +353,11 @@ run {c}
 
     def continued(self, folder):
         """From the restart file"""
-        return turned(f"read_restart {folder}/mid.restart\n{self.pair if self.setting('pair again') else ''}\n{self.physics()}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
+        return turned(f"read_restart {folder}/mid.restart\n{self.pair if self.setting('pair again') else ''}\n{self.physics()}\n{self.has['between'] if 'timestep' in self.row else ''}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
 
-    @staticmethod
-    def end(folder):
-        # open ends count when lists are built
-        return (f"run 0\nwrite_dump all custom {folder}/end.dump id type mass x y z vx vy vz c_state modify sort id time yes format float %.17g\n"
+    def end(self, folder):
+        count = 'if "$(is_defined(fix,dt))" then "unfix dt"\ntimestep 1e-9\nneighbor 1e-13 bin\nrun 1\n' if self.counted else ""
+        return (f"{count}run 0\nwrite_dump all custom {folder}/end.dump id type mass x y z vx vy vz c_state modify sort id time yes format float %.17g\n"
                 "variable now equal time\n")
 
 

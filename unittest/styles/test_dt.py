@@ -117,6 +117,29 @@ def test_second_order_with_a_changing_step(material):
     assert 1.9 < slopes[-1] < 2.1
 
 
+SOLIDS = {"updated": ("fsi/solid", "gradient corrected", RUBBER), "hypo": ("fsi/solid/tl", "law hypo", RUBBER),
+          "viscoelastic": ("fsi/solid/tl", "law viscoelastic", RUBBER + " prony 0.5 0.002")}
+
+
+@pytest.mark.parametrize("name, substeps", [("fluid", 1), ("updated", 1), ("hypo", 1), ("hypo", 3), ("viscoelastic", 1), ("viscoelastic", 3)])
+def test_second_order_with_timestep_commands(name, substeps):
+    """Likewise where a script changes the time step between runs, of all that lives at the middle of steps."""
+    style, solid, material = SOLIDS.get(name, ("fsi/solid", "", "fluid rho 1000"))
+    # what rests has no rates in its first step
+    push = ["variable fx atom 40*mass*exp(-(x*x+y*y)/0.04)", "variable fy atom 80*mass*x", "fix push all addforce v_fx v_fy 0"]
+    end = []
+    for n in (1, 2, 4, 8):
+        with Scene(lattice([6, 6], 0.1, center=True), dx=0.1, materials=(material,), fluid="tension yes", solid=solid, solid_style=style,
+                   density=f"substeps {substeps}", commands=push + ["fix stress all fsi/stress"] * (name == "hypo")) as s:
+            for k in range(24):
+                s.run_lines(f"timestep {2e-4 * 1.1**k / n}")
+                s.run(n)
+            end.append(s.get("x"))
+    slopes = [np.log2(np.linalg.norm(a - b) / np.linalg.norm(b - c)) for a, b, c in zip(end, end[1:], end[2:])]
+    print(f"order in dt, {name}: {slopes}")
+    assert 1.9 < slopes[-1] < 2.1
+
+
 @pytest.mark.parametrize("ranks", (1, 2))
 @pytest.mark.parametrize("every", (7, 10))
 @pytest.mark.parametrize("solid", ("fsi/solid", "fsi/solid/tl"))

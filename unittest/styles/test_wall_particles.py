@@ -143,6 +143,27 @@ def test_law(tmp_path, motion, dim, slip, pressure):
     close(last.vector(("fx", "fy", "fz")), force, 1e-9)
 
 
+@pytest.mark.parametrize("after", [0.3, 1.0, 3.0])
+def test_acceleration_of_a_float_where_the_time_step_changes(tmp_path, after):
+    """That of its last step, by the force at its middle"""
+    random, dt = np.random.default_rng(3), 2e-4
+    x = lattice((8, 9), DX)
+    kind = np.where(x[:, 1] < 4 * DX, 2, 1)
+    x[:, :2] += random.uniform(-0.15, 0.15, (len(x), 2)) * DX
+    rho = np.where(kind == 1, 1000.0 * (1 + random.uniform(-0.002, 0.008, len(x))), 0.0)
+    text = deck("artificial/visc 0 0", "oil wall", "slip yes guard 0", f"fix push wall addforce 2 5 0\nfix m wall rigid single torque 1 off off off\n{shot()}run 2\n"
+                f"timestep {after * dt}\nrun 1", dt=dt)
+    before, last = dump.read(go(tmp_path, text, data(x, kind, None, BOX2, rho)).folder / "atoms.dump")[-2:]
+    wall = last["type"] == 2
+    a = before.vector(("fx", "fy", "fz"))[wall].sum(0) / before["mass"][wall].sum() * wall[:, None]
+    assert np.abs(a).max() > 2 * G
+    for axis in "xy":    # the float's positions, too, are those of the middle
+        last[axis][wall] -= 0.5 * after * dt * last[f"v{axis}"][wall]
+    p, _ = law(last, a, 2, True, 5.0, after * dt, 0.0, False, np.zeros(3))
+    assert np.ptp(p[wall]) > 100
+    close(last["p"][wall], p[wall], 1e-11)
+
+
 def test_pressure_linear(tmp_path):
     """On the surface of a disc in a fluid whose pressure has a gradient: as in the fluid. A mean has the pressure of a place 1.3 dx outside."""
     n, radius = 40, 6 * DX
