@@ -239,7 +239,8 @@ void PairFSISolidTL::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   check_tally();
   warn_of_contact();
-  if (step->substeps > 1 && !update->setupflag) return;
+  if (step->substeps > 1 && !update->setupflag)
+    return reference->images.update(atom->x, atom->v);    // for fix fsi/watch
   internal_forces();
   add_forces();
 }
@@ -305,9 +306,11 @@ void PairFSISolidTL::find_rows()
                     zeta * material[type[i]].young, disc->h_of(type[i])});
   }
   if (step->substeps > 1 || (update->setupflag && step->takes_substeps(lmp))) refuse_rigid_parts();
+  // forces among what does not are in balance, but for those across planes of symmetry
   const auto moves = [&](const BondRow &row) {
     return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [&](int j) {
-             return mask[images.original(j)] & groupbit;
+             const int of = images.original(j);
+             return of != j || mask[of] & groupbit;
            });
   };
   nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();

@@ -46,6 +46,8 @@ class PairScene:
     dt: float = DT
     energy: bool = False
     counted: bool = False    # lists are built at the very end
+    watched: bool = False    # every output of the package, in every step
+    cut: bool = False        # each run in two
 
     @cached_property
     def has(self):
@@ -337,19 +339,32 @@ group spot intersect spot water
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)
+        run = lambda n: f"run {n // 2}\nrun {n - n // 2}" if self.cut else f"run {n}"    # noqa: E731
         return turned(f"""{self.head(f'{folder}/scene.data')}
 {self.pair}
 {self.physics()}
+{self.outputs() if self.watched else ''}
 {'run 0' if self.energy else ''}
 {'variable before equal $(c_energy:%.17g)' if self.energy else ''}
-run {a}
+{run(a)}
 variable gone equal {'$(mass(spot):%.17g)' if self.setting('spot') else 0}
 {self.between().replace('between.restart', f'{folder}/between.restart')}
-run {b}
+{run(b)}
 run 0
 write_restart {folder}/mid.restart
-run {c}
+{run(c)}
 {self.end(folder)}""", self.sign)
+
+    def outputs(self):
+        """Commands that look at the scene from all sides"""
+        solid = [f"compute w_tip body fsi/probe ux uy point {3 * DX} {(self.low + 3) * DX} {2.5 * DX if self.dim == 3 else 0}"] if self.has["body"] else []
+        middle = f"-0.05 0.03 {0.03 if self.dim == 3 else 0}"
+        on = "body" if self.has["body"] else "floor"
+        lines = ["compute w_energy all fsi/energy", "compute w_atom all fsi/atom p rho psi volume vonmises sxx syy sxy", "compute w_surface all fsi/surface/atom",
+                 f"compute w_force {on} fsi/force split yes", f"compute w_probe all fsi/probe p rho vx vy point {middle}", "fix w_report all fsi/report", "fix w_watch all fsi/watch 3 action warn",
+                 *solid, "fix w_mean all ave/atom 1 2 2 c_w_atom[1] c_w_surface"]
+        seen = " ".join(f"c_{c[8:].split()[0]}[1]" for c in lines if "probe" in c or "/force" in c)
+        return "\n".join([*lines, f"thermo_style custom step c_w_energy press pe {seen}", "thermo 1"])
 
     def continued(self, folder):
         """From the restart file"""

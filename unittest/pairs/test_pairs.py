@@ -130,6 +130,16 @@ def skin(r):
     same(r.scene, r.base, r.other(skin=1.0), SKIN)
 
 
+def watched(r):
+    """Who looks changes nothing."""
+    same(r.scene, r.base, r.other(watched=True), SKIN)
+
+
+def cut(r):
+    """A run in two parts is the run at once. (Delete_atoms numbers by order, which is made anew.)"""
+    same(r.scene, r.base, r.other(cut=True), SKIN)
+
+
 def no_levels(scene):
     """What splits and merges where there is a choice is decided by IDs."""
     return not scene.has["refine"]
@@ -187,7 +197,7 @@ def galilei(r):
     same(r.scene, r.base, other, ROUND)
 
 
-INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "skin": (always, skin),
+INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut),
               "numbering": (no_levels, numbering), "mirror": (ordered, mirror), "restart": (always, restart), "momentum": (alone, momentum), "frame": (drifts, galilei)}
 SAMPLE = {"four ranks": 8}    # asked of one scene in so many
 
@@ -241,6 +251,8 @@ FOUND = {  # faults that pairs have shown, each in the scene that has these leve
     "settling-beside-a-segment": (["3D", "cubic", "segment", "region", "svk", "clamped"], "ranks"),
     "what-a-thin-body-hides-from-either-side": (["3D", "tension", "thin", "clamped", "region"], "skin"),
     "bonds-longer-than-half-a-period": (["3D", "plastic", "self", "fsi/set"], "skin"),
+    "images-that-are-looked-at-before-sub-steps": (["svk", "sub-steps", "moving region", "symmetry plane"], "watched"),
+    "rigid-body-bonded-to-its-image": (["neo-hookean", "rigid", "sub-steps", "symmetry plane"], "watched"),
     "thickness-of-thin-bodies": (["3D", "quintic", "no walls", "thin", "rigid", "gravity"], "skin"),
 }
 
