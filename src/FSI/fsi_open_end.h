@@ -184,7 +184,7 @@ namespace FSI {
     explicit Nodes(LAMMPS *);
     void place(int axis, double spacing);    // as the simulation box is now
     // The nodes within a reach of some places, which stay so until the next lists; together on all
-    // ranks of a communicator
+    // ranks of a communicator; null: this rank is none of them
     void share(const std::vector<const double *> &give, double reach,
                const std::vector<const double *> &take, double reach_of_taken, MPI_Comm);
     // rows of some numbers to be summed and some of which the largest counts

@@ -105,14 +105,14 @@ void Nodes::share(const std::vector<const double *> &give, double reach,
   given = around(give, reach);
   taken = around(take, reach_of_taken);
   ranks = comm;
-  int me, n;
-  MPI_Comm_rank(ranks, &me);
+  peers.clear();
+  if (ranks == MPI_COMM_NULL) return;
+  int n;
   MPI_Comm_size(ranks, &n);
   const Box boxes[2] = {given, taken};
   std::vector<Box> all(2 * n);
   MPI_Allgather(const_cast<Box *>(boxes), sizeof(boxes), MPI_BYTE, all.data(), sizeof(boxes),
                 MPI_BYTE, ranks);
-  peers.clear();
   for (int r = 0; r < n; r++) {
     Peer peer;
     peer.rank = r;
@@ -218,7 +218,6 @@ void PlaneFit::fit(int nmoment, int nfit, int nfields)
 
 void PlaneFit::share()
 {
-  if (end.ranks == MPI_COMM_NULL) return;
   nodes.place(end.axis, end.disc->dx);
   // until the next lists particles move by half a skin, and a little
   const double moved = 0.5 * neighbor->skin + end.disc->dx;

@@ -48,6 +48,7 @@ class PairScene:
     counted: bool = False    # lists are built at the very end
     watched: bool = False    # every output of the package, in every step
     cut: bool = False        # each run in two
+    balanced: bool = False    # ranks of tiles that move
 
     @cached_property
     def has(self):
@@ -344,6 +345,8 @@ group spot intersect spot water
 {self.pair}
 {self.physics()}
 {self.outputs() if self.watched else ''}
+{"comm_style tiled" if self.balanced else ""}
+{"fix balance all balance 5 1.0 rcb" if self.balanced else ""}
 {'run 0' if self.energy else ''}
 {'variable before equal $(c_energy:%.17g)' if self.energy else ''}
 {run(a)}

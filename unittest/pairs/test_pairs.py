@@ -126,6 +126,10 @@ def four_ranks(r):
     same(r.scene, r.base, go_on_ranks(r.scene, r.folder / "four", 4), ROUND)
 
 
+def balanced(r):
+    same(r.scene, r.base, go_on_ranks(replace(r.scene, balanced=True), r.folder / "balanced", 2), ROUND)
+
+
 def skin(r):
     same(r.scene, r.base, r.other(skin=1.0), SKIN)
 
@@ -197,9 +201,9 @@ def galilei(r):
     same(r.scene, r.base, other, ROUND)
 
 
-INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut),
+INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut),
               "numbering": (no_levels, numbering), "mirror": (ordered, mirror), "restart": (always, restart), "momentum": (alone, momentum), "frame": (drifts, galilei)}
-SAMPLE = {"four ranks": 8}    # asked of one scene in so many
+SAMPLE = {"four ranks": 8, "balanced": 3}    # asked of one scene in so many
 
 
 def pytest_generate_tests(metafunc):
@@ -253,6 +257,7 @@ FOUND = {  # faults that pairs have shown, each in the scene that has these leve
     "bonds-longer-than-half-a-period": (["3D", "plastic", "self", "fsi/set"], "skin"),
     "images-that-are-looked-at-before-sub-steps": (["svk", "sub-steps", "moving region", "symmetry plane"], "watched"),
     "rigid-body-bonded-to-its-image": (["neo-hookean", "rigid", "sub-steps", "symmetry plane"], "watched"),
+    "end-that-leaves-a-rank": (["3D", "thin particles", "damage", "moving region", "absorbing ends"], "balanced"),
     "thickness-of-thin-bodies": (["3D", "quintic", "no walls", "thin", "rigid", "gravity"], "skin"),
 }
 
