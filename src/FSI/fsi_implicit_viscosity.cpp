@@ -102,7 +102,7 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
         const State &other = in.state[in.type[*j]];
         if (other.species == RIGID && !other.noslip) continue;
         const double of_face =
-            2.0 * g * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
+            2.0 * cut_off(in, j, g) * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
         for (int d = 0; d < D; d++) {
           const double sign = image.rubbing_sign[d];
           diagonal[D * row.i + d] += of_face * (1.0 + sign);

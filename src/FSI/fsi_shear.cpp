@@ -79,6 +79,7 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
         places_apart<IMAGES>(mirror, pi.x, pj.x, x);
         rubbing_apart<IMAGES>(mirror, pi.v, u, v);
         Number g = kernel.gradient(root(product(x, x))) * (backfill * pi.vol) * pj.vol;
+        if (!OF_FLUIDS) g = cut_off(in, j, g);
         if (IMAGES) g = weight * g;
         if constexpr (std::is_same_v<Number, double>)
           if (in.visible) g = as_visible(in, j, g);

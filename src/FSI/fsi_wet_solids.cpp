@@ -156,7 +156,7 @@ template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, 
         difference(point[i].x, point[*j].x, x);
         const double rsq = product(x, x), r = std::sqrt(rsq);
         if (rsq >= kernel.cutsq || r == 0.0 || !(atom->mask[*j] & disc.mover->groupbit)) continue;
-        const double v = point[i].vol * point[*j].vol * kernel.gradient(r);
+        const double v = point[i].vol * point[*j].vol * cut_off(in, j, kernel.gradient(r));
         use(i, *j, x, -2.0 * z * v / r, -4.0 * eta * v);
       }
     }

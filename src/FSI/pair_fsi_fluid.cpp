@@ -227,7 +227,8 @@ void PairFSIFluid::check_effects(const Facts &of_solids) const
   } refused[] = {
       {delta > 0.0 && !rates, Refused::CONTINUITY, "density/diffusion"},
       {surfaces && !rates, Refused::CONTINUITY, "density/surface"},
-      {shifting > 0.0 && !rates, Refused::CONTINUITY, "shift"},
+      {shifting > 0.0 && !(rates && disc->density_solid == Discretization::CONTINUITY),
+       Refused::CONTINUITY, "shift"},
       {surfaces && (tension || background_pressure() != 0.0), Refused::SURFACES, ""},
       {implicit && laminar != PLAIN_LAMINAR, Refused::IMPLICIT, ""},
       {full && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS, Refused::FULL_TOTAL, ""},

@@ -46,6 +46,7 @@ FACTORS = {
         "plastic": {"body": "fsi/solid/tl", "solid": "law hypo artificial/visc 0.1 0", "stress": "plastic", "material": "yield 200 hardening 1e4"},
         "damage": {"body": "fsi/solid/tl", "solid": "gradient linear damage 0.01 artificial/visc 0.1 0"},
         "hypo updated": {"body": "fsi/solid", "solid": "gradient corrected artificial/visc 0.1 0 artificial/stress 0.3 hourglass 0.1", "stress": " "},
+        "paper": {"body": "fsi/solid", "solid": "artificial/visc 1 0 artificial/stress 0.3", "stress": " "},
         "quadratic updated": {"body": "fsi/solid", "solid": "gradient quadratic artificial/visc 0.1 0", "stress": " "},
         "plane stress": {"body": "fsi/solid/tl", "solid": "plane stress volumes plain volumetric local gradient linear"},
         "hypo total": {"body": "fsi/solid/tl", "solid": "law hypo artificial/visc 0.1 0", "stress": " "},
@@ -90,6 +91,7 @@ FACTORS = {
         "timestep": {"between": "timestep 1.3e-4"},
         "write_restart": {"between": "write_restart between.restart"},
     },
+    "density": {"continuity": {}, "article": {"fsi": "scheme article"}, "summation": {"fsi": "fluid summation"}, "ratio": {"fsi": "solid ratio"}},
     "symmetry": {"no plane": {}, "symmetry plane": {"settings": {"plane": True}}},
 }
 FACTOR_OF = {level: factor for factor, levels in FACTORS.items() for level in levels}
@@ -100,7 +102,7 @@ def all_of(factor, *but):
     return [level for level in FACTORS[factor] if level not in (FIRST[factor], *but)]
 
 
-UPDATED = ("hypo updated", "quadratic updated")
+UPDATED = ("hypo updated", "quadratic updated", "paper")
 TOTAL = all_of("solid", *UPDATED)
 
 # {reason: pairs of levels, each a level or several}: what makes no sense, or is not what the level is for
@@ -118,6 +120,14 @@ REFUSED = {
     **{("grains", law): (r"requires fluids of constant viscosity", {}) for law in ("shear thinning", "yield stress")},
     ("self", "symmetry plane"): (r"self yes does not go with symmetry yes", {}),
     **{(solid, "sub-steps"): (r"substeps requires pair_style fsi/solid/tl", {}) for solid in UPDATED},
+    **{(mode, level): (r"requires density by continuity", {}) for mode in ("article", "summation")
+       for level in ("diffused", "shift", "shift every 3", "surface rule", "thin particles", *all_of("levels"), *all_of("ends"))},
+    ("summation", "thin"): (r"requires density by continuity", {}),
+    **{("ratio", level): (r"requires density by continuity", {"solid": "paper"}) for level in ("shift", "shift every 3")},
+    ("ratio", "thin particles"): (r"requires density by continuity", {"solid": "paper"}),
+    **{(mode, solid): (r"does not go with pair_style fsi/solid/tl", {}) for mode in ("article", "ratio") for solid in TOTAL},
+    **{("article", solid): (r"requires pair_style fsi/solid gradient plain", {}) for solid in UPDATED if solid != "paper"},
+    **{(mode, "sub-steps"): (r"substeps requires pair_style fsi/solid/tl", {"solid": "paper"}) for mode in ("article", "ratio")},
     ("plane stress", "3D"): (r"plane stress requires dimension 2", {}),
     **{("reset_atoms", solid): (r"reset_atoms id", {}) for solid in TOTAL},
     ("reset_atoms", "sub-steps"): (r"reset_atoms id", {"solid": "svk"}),
@@ -239,7 +249,7 @@ ELSEWHERE = {
     "compute_fsi_force": {"test_force": "fsi/force split yes no"},
     "compute_fsi_probe": {"test_probe": "fsi/probe point patch line level wet extrapolate fill p rho vx vy vz ux uy uz yes no"},
     "compute_fsi_surface_atom": {"test_surface": "fsi/surface/atom divergence number/density"},
-    "fix_fsi": {"test_density": "fluid solid continuity summation ratio", "test_parallel": "scheme article mach off", "test_bad_input": "standard"},
+    "fix_fsi": {"test_density": "continuity", "test_parallel": "mach off", "test_bad_input": "standard"},
     "fix_fsi_dt": {"test_dt": "cfl/solid min max growth keep stop no error"},
     "fix_fsi_inlet": {"test_inlet": "region ylo yhi zlo zhi"},
     "fix_fsi_move": {"test_move": "linear rotate transrot lattice"},
