@@ -29,6 +29,7 @@ WORDS = (  # of names of figures, for readers who do not know them; the first th
     (r"tip_y_peak", "rise of the tip"), (r"deflection_3_across", "the same, 3 particles"), (r"deflection_5", "the same, 5 particles"), (r"ratio_1400_6", "the same, 6 particles"),
     (r"frequency_3", "the same, 3 particles"), (r"end_87.5", "deflection at 0.5 s"), (r"dz_levels", "deflection downward"),
     (r"uz_twice_6", "deflection across the stream"), (r"pitch_box_20", "pitch of the float"), (r"draft_0.25", "draft at a quarter of the density"),
+    (r"ux_mean", "mean displacement along the flag"), (r"ux_amplitude", "its amplitude along the flag"), (r"^ux_", "displacement along the flag"),
     (r"forward_2", "volume of the second pulse"))
 
 
