@@ -340,7 +340,6 @@ group spot intersect spot water
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)
-        run = lambda n: f"run {n // 2}\nrun {n - n // 2}" if self.cut else f"run {n}"    # noqa: E731
         return turned(f"""{self.head(f'{folder}/scene.data')}
 {self.pair}
 {self.physics()}
@@ -349,14 +348,17 @@ group spot intersect spot water
 {"fix balance all balance 5 1.0 rcb" if self.balanced else ""}
 {'run 0' if self.energy else ''}
 {'variable before equal $(c_energy:%.17g)' if self.energy else ''}
-{run(a)}
+{self.steps(a)}
 variable gone equal {'$(mass(spot):%.17g)' if self.setting('spot') else 0}
 {self.between().replace('between.restart', f'{folder}/between.restart')}
-{run(b)}
+{self.steps(b)}
 run 0
 write_restart {folder}/mid.restart
-{run(c)}
+{self.steps(c)}
 {self.end(folder)}""", self.sign)
+
+    def steps(self, n):
+        return f"run {n // 2}\nrun {n - n // 2}" if self.cut else f"run {n}"
 
     def outputs(self):
         """Commands that look at the scene from all sides"""
