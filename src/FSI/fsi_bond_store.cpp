@@ -205,13 +205,13 @@ void BondStore::follow_long_bonds(int i, int *of_i) const
     const auto span = [&](int k) {
       return of_i[k] < 0 ? 0.0 : x[of_i[k]][a] - x[i][a];
     };
-    double row[3] = {};    // of F
     bool all_short = true;
-    for (int k = 0; k < n; k++) {
-      all_short = all_short && std::fabs(span(k)) < 0.25 * domain->prd[a];
+    for (int k = 0; k < n; k++) all_short &= std::fabs(span(k)) < 0.25 * domain->prd[a];
+    if (all_short) continue;
+    double row[3] = {};    // of F
+    for (int k = 0; k < n; k++)
       for (int c = 0; c < D; c++) row[c] += span(k) * bond(i, k)[c * BOND_BLOCK];
-    }
-    for (int k = 0; k < n && !all_short; k++) {
+    for (int k = 0; k < n; k++) {
       if (of_i[k] < 0) continue;
       const double *const xj = x[of_i[k]];
       double place[3] = {xj[0], xj[1], xj[2]};
