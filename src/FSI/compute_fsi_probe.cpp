@@ -13,6 +13,7 @@
 
 #include "compute_fsi_probe.h"
 
+#include "arg_info.h"
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
@@ -51,6 +52,8 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
     const auto it = std::find(names.begin(), names.end(), word);
     if (it != names.end())
       quantity.push_back(it - names.begin());
+    else if (utils::strmatch(word, "^c_"))
+      read_sampled(word);
     else if (word == "point" || word == "patch" || word == "line")
       iarg += read_place(word, narg - iarg, arg + iarg);
     else if (word == "extrapolate") {
@@ -58,7 +61,7 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
       extrapolate = utils::logical(FLERR, arg[iarg++], false, lmp);
     } else {
       auto known = names;
-      known.insert(known.end(), {"point", "patch", "line", "extrapolate"});
+      known.insert(known.end(), {"c_ID", "point", "patch", "line", "extrapolate"});
       error->all(FLERR, "Unknown compute fsi/probe argument {}: expected {}", word, list_of(known));
     }
   }
@@ -66,14 +69,15 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
   if (places.empty()) error->all(FLERR, "Compute fsi/probe needs a place: point, patch or line");
   for (const int q : quantity)
     for (const auto &place : places)
-      if (std::max(q, quantity[0]) >= UX) {
-        if (std::min(q, quantity[0]) < UX || !std::equal(place.from, place.from + 3, place.to))
+      if (of_body(q) || of_body(quantity[0])) {
+        if (!of_body(q) || !of_body(quantity[0]) ||
+            !std::equal(place.from, place.from + 3, place.to))
           error->all(FLERR, "Compute fsi/probe ux, uy, uz need points, and no other quantity");
       } else if (place.line != (q == LEVEL || q == WET))
-        error->all(FLERR, "Compute fsi/probe {} needs {}", names[q],
+        error->all(FLERR, "Compute fsi/probe {} needs {}", q < SAMPLED ? names[q] : "c_ID",
                    place.line ? "a point or a patch, not a line" : "a line");
 
-  create_attribute = quantity[0] >= UX;
+  create_attribute = of_body(quantity[0]);
   for (size_t k = 0; k < places.size() && create_attribute; k++)
     places[k].kept = dynamic_cast<FixStoreAtom *>(modify->add_fix(
         fmt::format("{}_FSI_{} {} STORE/ATOM 4 0 0 1", id, k, group->names[igroup])));
@@ -93,6 +97,29 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
     size_array_rows = rows;
     size_array_cols = columns;
     memory->create(array, rows, columns, "fsi/probe:array");
+  }
+}
+
+void ComputeFSIProbe::read_sampled(const std::string &word)
+{
+  const ArgInfo given(word, ArgInfo::COMPUTE);
+  if (given.get_type() != ArgInfo::COMPUTE || given.get_dim() > 1)
+    error->all(FLERR, "Compute fsi/probe {}: expected c_ID or c_ID[n]", word);
+  quantity.push_back(SAMPLED + sampled.size());
+  sampled.push_back({given.get_name(), given.get_index1()});
+}
+
+void ComputeFSIProbe::find_sampled()
+{
+  for (auto &s : sampled) {
+    s.compute = modify->get_compute_by_id(s.id);
+    if (!s.compute) error->all(FLERR, "Compute fsi/probe c_{}: there is no such compute", s.id);
+    if (!s.compute->peratom_flag)
+      error->all(FLERR, "Compute fsi/probe c_{} is not a per-atom compute", s.id);
+    const int columns = s.compute->size_peratom_cols;
+    if (s.column > columns || (s.column == 0 && columns > 0))
+      error->all(FLERR, "Compute fsi/probe c_{}: expected {}", s.id,
+                 columns ? fmt::format("a column from 1 to {}", columns) : "no column");
   }
 }
 
@@ -131,6 +158,7 @@ ComputeFSIProbe::~ComputeFSIProbe()
 void ComputeFSIProbe::init()
 {
   disc = &FixFSI::find(lmp, "Compute fsi/probe")->disc;
+  find_sampled();
   listed = -1;
   points.clear();
   nsums = places[0].line ? 2 : 1 + quantity.size();
@@ -292,6 +320,7 @@ double ComputeFSIProbe::volume_at(const double *x, int i, const Walls &walls) co
 
 // What a particle gives to the sums of points around it
 struct ComputeFSIProbe::Source {
+  int i;
   double rho, pressure, floor;
   bool fluid;
 };
@@ -305,7 +334,11 @@ void ComputeFSIProbe::add(const Place &place, const Source &of, double weight, d
       sum[q + 1] += weight * (extrapolate ? std::max(of.pressure + head, of.floor) : of.pressure);
     else if (quantity[q] == RHO)
       sum[q + 1] += weight * of.rho;
-    else if (quantity[q] != FILL)
+    else if (quantity[q] >= SAMPLED) {
+      const Sampled &s = sampled[quantity[q] - SAMPLED];
+      sum[q + 1] += weight *
+          (s.column ? s.compute->array_atom[of.i][s.column - 1] : s.compute->vector_atom[of.i]);
+    } else if (quantity[q] != FILL)
       sum[q + 1] += weight * v[quantity[q] - VX];
   }
 }
@@ -321,8 +354,8 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
     const State &state = disc->state[type];
     const auto &g = step->body_forces.of_type[type];
     const bool fluid = state.species == FLUID;
-    const Source of = {atom->rho[i], fluid ? pressure_of(i, atom, *disc, *step) : 0.0, state.floor,
-                       fluid};
+    const Source of = {i, atom->rho[i], fluid ? pressure_of(i, atom, *disc, *step) : 0.0,
+                       state.floor, fluid};
     double x[3];
     for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
     const double vol = volume_at(x, i, walls);
@@ -366,6 +399,11 @@ void ComputeFSIProbe::sum_up()
   const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/probe");
   disc = &fix_fsi->disc;
   step = &fix_fsi->step;
+  for (const auto &s : sampled)
+    if (!(s.compute->invoked_flag & INVOKED_PERATOM)) {
+      s.compute->compute_peratom();
+      s.compute->invoked_flag |= INVOKED_PERATOM;
+    }
   if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
 
   const int npoints = points.size() / 3;
@@ -508,7 +546,7 @@ void ComputeFSIProbe::displace(Place &place) const
 
 void ComputeFSIProbe::evaluate(double *result)
 {
-  if (quantity[0] < UX) sum_up();
+  if (!of_body(quantity[0])) sum_up();
   for (auto &place : places) {
     if (place.kept) displace(place);
     for (size_t k = 0; k < quantity.size(); k++)

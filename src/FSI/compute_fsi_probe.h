@@ -49,8 +49,17 @@ class ComputeFSIProbe : public Compute {
   double memory_usage() override;
 
  private:
-  enum Quantity { P, RHO, VX, VY, VZ, FILL, LEVEL, WET, UX, UY, UZ };
-  std::vector<int> quantity;
+  enum Quantity { P, RHO, VX, VY, VZ, FILL, LEVEL, WET, UX, UY, UZ, SAMPLED };
+  static bool of_body(int q) { return q >= UX && q < SAMPLED; }
+  std::vector<int> quantity;    // from SAMPLED on: the index of a per-atom compute among these
+  struct Sampled {
+    std::string id;
+    int column;    // 0: a vector
+    Compute *compute = nullptr;
+  };
+  std::vector<Sampled> sampled;
+  void read_sampled(const std::string &word);
+  void find_sampled();
   bool extrapolate;
 
   struct Particle {

@@ -68,6 +68,8 @@ def deck(page, example):
         moves = FIX.replace("all", "water") + "group wall type 2\ngroup blades type 2\n"
         lines = examples(page)  # variables stand before the fix that has them
         return SETUP + PAIRS + moves + STRESS + "\n".join(line for line in lines if line.startswith("variable")) + f"\n{example}\nrun 1\n"
+    if "c_shear" in example:
+        example = "\n".join(line for line in examples(page) if line.startswith("compute shear")) + f"\n{example}"
     fix = "" if page == "fix_fsi" else FIX
     stress = "" if sub or page == "fix_fsi_stress" else STRESS
     return SETUP + pairs + fix + stress + GRAVITY + example + "\nrun 1\n"

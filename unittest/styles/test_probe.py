@@ -117,6 +117,29 @@ def test_periodic_and_group():
     assert np.all(np.abs(got[:, 2] - 1) < 0.25)
 
 
+@pytest.mark.parametrize("dim", (2, 3))
+def test_values_of_other_computes(dim):
+    """c_ID and c_ID[n] are read as p and rho are, images included, at points and over patches; with the shear rate of a linear flow, exactly."""
+    x, v = cloud((12, 9) if dim == 2 else (6, 6, 6), DX, vmax=0.3)
+    places = "point 0.45 0.31 0.33 point 0 0.25 0.2 point 5 5 0 patch 0.1 0 0.2 0.5 0.3 0.2"
+    commands = ["fix w all fsi/wall/mirror xlo 0 ylo 0", "compute one all fsi/atom p", "compute both all fsi/atom volume rho",
+                f"compute probe all fsi/probe c_one p rho c_both[2] {places}"]
+    with Scene(x, v, dim=dim, dx=DX, commands=commands) as s:
+        s.put("rho", 1000 * (1 + np.random.default_rng(3).uniform(-0.01, 0.01, s.n)))
+        s.run()
+        got = get(s, kind=LMP_TYPE_ARRAY)
+        assert np.all(got[[0, 1, 3], :2] > 0) and not got[2].any()
+        assert np.array_equal(got[:, 0], got[:, 1]) and np.array_equal(got[:, 2], got[:, 3])
+    x = lattice((16, 16) if dim == 2 else (12, 12, 12), DX)
+    v = np.zeros_like(x)
+    v[:, 0] = 3.0 * x[:, 1]
+    middle = "point 0.8 0.81 0" if dim == 2 else "point 0.6 0.61 0.6"
+    commands = ["compute shear all fsi/atom shear/rate sxy", f"compute probe all fsi/probe c_shear[1] c_shear[2] {middle}"]
+    with Scene(x, v, dim=dim, dx=DX, materials=(f"{WATER} viscosity 2",), fluid="sound 10 laminar/visc", commands=commands) as s:
+        s.run()
+        np.testing.assert_allclose(get(s), (3.0, 6.0), rtol=1e-10)
+
+
 # ---- what is known from outside ------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("dim", (2, 3))
