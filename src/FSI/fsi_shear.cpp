@@ -98,6 +98,43 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
   });
 }
 
+// adds V_i V_j W_ij (L_i - L_j), L = grad v, to the sums of both; an image has the signs of its walls
+template <class T, class K, bool IMAGES, int D = K::DIM, int ROW>
+static void add_differences(const std::vector<Row> &rows, const Mirror &mirror, const K &kernel,
+                            const FluidParticles &in, const double *L, double (*const sum)[ROW])
+{
+  const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+  double sign[D * D];
+  for (int k = 0; k < D * D; k++)
+    sign[k] = IMAGES ? mirror.rubbing_sign[k / D] * mirror.sign[k % D] : 1.0;
+  run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+    using Number = decltype(number);
+    for (const Row &row : rows) {
+      const double *const Li = L + (size_t) D * D * row.i;
+      const Particle<Number, D> pi(point[row.i]);
+      Number of_i[D * D];
+      for (Number &s : of_i) s = 0.0;
+      for_neighbors<Number, IMAGES>(row, [&](const int *j, const Number &weight) FSI_INLINE_LAMBDA {
+        const Particle<Number, D> pj(point, j);
+        Number x[D], on_j[D * D];
+        places_apart<IMAGES>(mirror, pi.x, pj.x, x);
+        Number w = weight * kernel.W(root(product(x, x))) * pi.vol * pj.vol;
+        if constexpr (std::is_same_v<Number, double>)
+          if (in.visible) w = as_visible(in, j, w);
+        for (int k = 0; k < D * D; k++) {
+          const Number Lj = Lanes<Number>::make([&](int n) {
+            return L[(size_t) D * D * j[n] + k];
+          });
+          of_i[k] += w * (Li[k] - sign[k] * Lj);
+          on_j[k] = w * (Lj - sign[k] * Li[k]);
+        }
+        Lanes<Number>::add_rows(on_j, sum, j);
+      });
+      for (int k = 0; k < D * D; k++) sum[row.i][k] += Lanes<Number>::sum(of_i[k]);
+    }
+  });
+}
+
 bool Shear::varies() const
 {
   return eddies > 0.0 || std::any_of(disc.state.begin(), disc.state.end(), [](const State &s) {
@@ -112,6 +149,29 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
                 : find_gradients<3>(pairs, of_level, laws);
 }
 
+// calls loop(number, kernel, image, rows, mirror, particles, set) for all sets of pairs
+template <int D, class Loop>
+void Shear::for_rows(PairSets &pairs, const std::vector<FluidParticles> &of_level, Loop loop) const
+{
+  pairs.for_all(step.walls, of_level[0].points,
+                [&](const PairSet &set, const std::vector<Row> &rows,
+                    const std::vector<double> &visible, const Mirror *mirror, int) {
+                  if (rows.empty()) return;
+                  FluidParticles in = of_level[set.level];
+                  const Visible seen = {visible.data(), rows[0].j};
+                  if (set.what == PairSet::HIDDEN) in.visible = &seen;
+                  with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
+                    if constexpr (std::decay_t<decltype(kernel)>::DIM == D) {
+                      const auto with = [&](auto number) {
+                        mirror ? loop(number, kernel, std::true_type(), rows, *mirror, in, set)
+                               : loop(number, kernel, std::false_type(), rows, Mirror(), in, set);
+                      };
+                      have_packs() && !in.visible ? with(Pack()) : with(0.0);
+                    }
+                  });
+                });
+}
+
 template <int D>
 void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &of_level,
                            const ForceLaws &laws)
@@ -119,33 +179,18 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
   constexpr int ROW = Sums<D>::ROW, N = Sym<D>::N;
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
   sums.assign((size_t) ROW * nall, 0.0);
-  gradients.assign((size_t) D * D * nlocal, 0.0);
-  const auto add = [&](const PairSet &set, const std::vector<Row> &rows,
-                       const std::vector<double> &visible, const Mirror *mirror, int) {
-    if (rows.empty()) return;
-    if (set.what == PairSet::SOLIDS && laws.solids_slip) return;    // no fluid beyond it, either
-    FluidParticles in = of_level[set.level];
-    const Visible seen = {visible.data(), rows[0].j};
-    if (set.what == PairSet::HIDDEN) in.visible = &seen;
-    const bool packs = have_packs() && !in.visible;
-    with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
-      using K = std::decay_t<decltype(kernel)>;
-      if constexpr (K::DIM == D) {
-        const auto with = [&](auto number) {
-          using T = decltype(number);
-          const bool fluid = set.kind == WITH_FLUID;
-          if (mirror)
-            fluid ? add_rows<T, K, true, true>(rows, *mirror, kernel, in, laws, sums.data())
-                  : add_rows<T, K, true, false>(rows, *mirror, kernel, in, laws, sums.data());
-          else
-            fluid ? add_rows<T, K, false, true>(rows, Mirror(), kernel, in, laws, sums.data())
-                  : add_rows<T, K, false, false>(rows, Mirror(), kernel, in, laws, sums.data());
-        };
-        packs ? with(Pack()) : with(0.0);
-      }
-    });
-  };
-  pairs.for_all(step.walls, of_level[0].points, add);
+  gradients.assign((size_t) D * D * nall, 0.0);
+  for_rows<D>(pairs, of_level,
+              [&](auto number, const auto &kernel, auto image, const std::vector<Row> &rows,
+                  const Mirror &mirror, const FluidParticles &in, const PairSet &set) {
+                using T = decltype(number);
+                using K = std::decay_t<decltype(kernel)>;
+                // no fluid beyond solids that slip
+                if (set.what == PairSet::SOLIDS && laws.solids_slip) return;
+                set.kind == WITH_FLUID
+                    ? add_rows<T, K, image(), true>(rows, mirror, kernel, in, laws, sums.data())
+                    : add_rows<T, K, image(), false>(rows, mirror, kernel, in, laws, sums.data());
+              });
   ghosts.add(sums.data(), ROW);
   for (int i = 0; i < nlocal; i++) {
     if (disc.state[type[i]].species != FLUID) continue;
@@ -160,6 +205,29 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
       for (int b = 0; b < D; b++)
         for (int c = 0; c < D; c++) L[a * D + b] += s[N + a * D + c] * C[c * D + b] / det;
   }
+  sharpen<D>(pairs, of_level);
+}
+
+// What the kernel has smoothed is undone to first order (van Cittert; Stolz and Adams 1999):
+//   grad v_i += sum_j V_j W_ij (grad v_i - grad v_j)  over fluids and their images
+template <int D> void Shear::sharpen(PairSets &pairs, const std::vector<FluidParticles> &of_level)
+{
+  constexpr int ROW = D == 2 ? 4 : 12;    // the gradient by its components
+  ghosts.send(gradients.data(), D * D);
+  sums.assign((size_t) ROW * (atom->nlocal + atom->nghost), 0.0);
+  for_rows<D>(pairs, of_level,
+              [&](auto number, const auto &kernel, auto image, const std::vector<Row> &rows,
+                  const Mirror &mirror, const FluidParticles &in, const PairSet &set) {
+                if (set.kind == WITH_FLUID)
+                  add_differences<decltype(number), std::decay_t<decltype(kernel)>, image()>(
+                      rows, mirror, kernel, in, gradients.data(),
+                      reinterpret_cast<double(*)[ROW]>(sums.data()));
+              });
+  ghosts.add(sums.data(), ROW);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int k = 0; k < D * D; k++)
+      gradients[(size_t) D * D * i + k] +=
+          sums[(size_t) ROW * i + k] * atom->rho[i] / atom->rmass[i];
 }
 
 double Shear::rate(int i) const

@@ -42,7 +42,7 @@ namespace FSI {
     // dv_a/dx_b of local fluid particles, where pairs and points are now: of neighbors, images and
     // what no-slip walls and solids have beyond their face, exact for linear fields,
     //   grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,  g_ij = grad_i W_ij
-    // (Randles and Libersky 1996). 0 where neighbors are too few.
+    // (Randles and Libersky 1996), without the kernel's smoothing. 0 where neighbors are too few.
     void find_gradients(PairSets &, const std::vector<FluidParticles> &of_level,
                         const ForceLaws &laws);
     const double *gradient(int i) const { return &gradients[(size_t) i * disc.dim * disc.dim]; }
@@ -67,6 +67,9 @@ namespace FSI {
     std::vector<double> sums, gradients, viscosity;
     template <int D>
     void find_gradients(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &);
+    template <int D> void sharpen(PairSets &, const std::vector<FluidParticles> &);
+    template <int D, class Loop>
+    void for_rows(PairSets &, const std::vector<FluidParticles> &, Loop) const;
   };
 
 }    // namespace FSI
