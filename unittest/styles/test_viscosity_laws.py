@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scenes import cloud, lammps, particles, run
+from scenes import Scene, cloud, lammps, lattice, particles, run
 
 LAWS = {
     "power 2 0.5 viscosity/limits 0.1 30": lambda r: min(max(2 * r**-0.5, 0.1), 30),
@@ -81,6 +81,33 @@ def test_shear_at_a_wall(tmp_path):
     """Beyond a no-slip wall fluid has the velocity of its mirror image: shear along it stays exact, with the wall's own velocity."""
     found = state(tmp_path, "power 2 1.5", 2, [[0, 3.0, 0], [0, 0, 0], [0, 0, 0]], "fix w all fsi/wall/mirror ylo -0.005 slip no velocity -0.015 0 0")
     np.testing.assert_allclose(found[:, 4], 3.0, rtol=1e-8)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("walls", ["", "slip no", "slip yes"])
+def test_shear_of_a_wave(walls, dim):
+    """Of v_x = sin ky the kernel leaves a part G of the rate, and S of a mean; deconvolution makes of it G (2 - S), on the lattice to round-off. Between
+    no-slip mirrors the wave goes on as it is, between those that slip cos ky does. What it leaves is of second order in 1 - G.
+    """
+    n = (7, 16) if dim == 2 else (7, 16, 7)
+    k = math.pi / 8
+    x = lattice(n, 1.0)
+    v = np.zeros_like(x)
+    v[:, 0] = (np.cos if "yes" in walls else np.sin)(k * x[:, 1])
+    box, periodic = ((0, 0, 0), (7, 16, 7)), "p f p" if walls else "p p p"
+    commands = [f"fix w all fsi/wall/mirror ylo 0 {walls} yhi 16 {walls}"] if walls else []
+    with Scene(x, v, dim=dim, box=box, boundary=periodic, materials=("fluid rho 1000 viscosity 1",), fluid="laminar/visc", commands=["compute of all fsi/atom shear/rate", *commands]) as s:
+        s.run()
+        rate = s.compute("of", columns=False)
+        steps = np.array(np.meshgrid(*[np.arange(-3, 4.0)] * dim)).reshape(dim, -1)
+        r = np.linalg.norm(steps, axis=0)
+        W, y = s.kernel.W(r) / s.kernel.W(r).sum(), steps[1]    # times the volume
+        g = s.kernel.g(r)
+        G = (g * y * np.sin(k * y)).sum() / (k * (g * y * y).sum())
+        S = 1 - (W * (1 - np.cos(k * y))).sum()
+    exact = k * abs((np.sin if "yes" in walls else np.cos)(k * x[:, 1]))
+    np.testing.assert_allclose(rate, G * (2 - S) * exact, rtol=1e-9, atol=1e-12)
+    assert 0.9 < G < 0.97 and abs(G * (2 - S) - 1) < 0.2 * (1 - G)
 
 
 CHANNEL = """units si
