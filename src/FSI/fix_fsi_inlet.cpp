@@ -182,7 +182,7 @@ void FixFSIInlet::setup_pre_exchange()
   made = {end.position, end.length};
   of_file = false;
   if (was_filled) return;
-  members->buffer.fill();
+  members->buffer.populate();
   members->absorber.find_area();
 }
 

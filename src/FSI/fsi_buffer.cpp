@@ -80,7 +80,7 @@ void Buffer::check_levels(bool is_empty) const
                end.name, finer.count, disc->dx, finer.first, length);
 }
 
-void Buffer::fill()
+void Buffer::populate()
 {
   end.match_region();
   bool has_some = false;

@@ -104,7 +104,7 @@ void Clamps::find_members()
 {
   members.clear();
   of_fixes([this](size_t first, size_t last) {
-    const auto of = entries(first, last);
+    const auto of = places_by_id(first, last);
     const RigidBodies &rigid = *bodies[first].fix;
     for (size_t k = first; k < last; k++) {
       bodies[k].displace = rigid.displace();
@@ -128,7 +128,7 @@ template <class Use> void Clamps::of_fixes(Use use) const
 }
 
 // which of those it is that a fix knows by this
-std::unordered_map<tagint, size_t> Clamps::entries(size_t first, size_t last) const
+std::unordered_map<tagint, size_t> Clamps::places_by_id(size_t first, size_t last) const
 {
   std::unordered_map<tagint, size_t> of;
   for (size_t k = first; k < last; k++) of[bodies[k].id] = k;
@@ -138,7 +138,7 @@ std::unordered_map<tagint, size_t> Clamps::entries(size_t first, size_t last) co
 void Clamps::store() const
 {
   of_fixes([this](size_t first, size_t last) {
-    const auto of = entries(first, last);
+    const auto of = places_by_id(first, last);
     bodies[first].fix->store([&](tagint id) -> const BodyNow * {
       const auto at = of.find(id);
       return at == of.end() ? nullptr : &bodies[at->second];
@@ -151,7 +151,7 @@ void Clamps::store() const
 template <class Use> void Clamps::with_states(Use use)
 {
   of_fixes([&](size_t first, size_t last) {
-    const auto of = entries(first, last);
+    const auto of = places_by_id(first, last);
     std::vector<BodyState> states;
     for (const BodyState &s : bodies[first].fix->states())
       if (of.count(s.id)) states.push_back(s);

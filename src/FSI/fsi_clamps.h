@@ -89,7 +89,7 @@ namespace FSI {
     void sum(const std::vector<Member> &, const double *const *f, bool whole);
     void add_own(const Body &, double *force_and_torque) const;
     template <class Use> void of_fixes(Use) const;
-    std::unordered_map<tagint, size_t> entries(size_t first, size_t last) const;
+    std::unordered_map<tagint, size_t> places_by_id(size_t first, size_t last) const;
     template <class Use> void with_states(Use);
     void store() const;
     void to_start();

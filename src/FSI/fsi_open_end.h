@@ -283,7 +283,8 @@ namespace FSI {
     Buffer(LAMMPS *lmp, OpenEnd &end) : Pointers(lmp), end(end) {}
     void set_fields(Fields &);
     void init(const Discretization &, Ledger &, Population &);
-    void fill();    // before the first run; an empty one with the fluid before it, which goes on
+    // before the first run; an empty one with the fluid before it, which goes on
+    void populate();
     // when lists are built: what has passed the plane, or the end of the buffer
     void exchange(const std::vector<const OpenEnd *> &all_ends);
     void start_step();
