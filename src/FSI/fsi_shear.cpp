@@ -28,6 +28,13 @@ using namespace FSI;
 // below this a gradient says nothing
 static constexpr double FEW = 1.0e-4;
 
+// numbers per particle: grad v, and how far it is known: 0 where neighbors are few, 1 from half a
+// support on, as at a flat surface
+static constexpr int numbers_of(int dim)
+{
+  return dim * dim + 1;
+}
+
 namespace {
 // Of a particle: sum of V x (x) g by its components, then that of V v (x) g. Times V_i what a pair
 // is in them is the same for both.
@@ -98,11 +105,13 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
   });
 }
 
-// adds V_i V_j W_ij (L_i - L_j), L = grad v, to the sums of both; an image has the signs of its walls
+// adds V_i V_j W_ij (L_i - L_j), L = grad v as far as both are known, to the sums of both; an image
+// has the signs of its walls
 template <class T, class K, bool IMAGES, int D = K::DIM, int ROW>
 static void add_differences(const std::vector<Row> &rows, const Mirror &mirror, const K &kernel,
                             const FluidParticles &in, const double *L, double (*const sum)[ROW])
 {
+  constexpr int N = numbers_of(D);
   const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
   double sign[D * D];
   for (int k = 0; k < D * D; k++)
@@ -110,7 +119,7 @@ static void add_differences(const std::vector<Row> &rows, const Mirror &mirror, 
   run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
     using Number = decltype(number);
     for (const Row &row : rows) {
-      const double *const Li = L + (size_t) D * D * row.i;
+      const double *const Li = L + (size_t) N * row.i;
       const Particle<Number, D> pi(point[row.i]);
       Number of_i[D * D];
       for (Number &s : of_i) s = 0.0;
@@ -118,13 +127,17 @@ static void add_differences(const std::vector<Row> &rows, const Mirror &mirror, 
         const Particle<Number, D> pj(point, j);
         Number x[D], on_j[D * D];
         places_apart<IMAGES>(mirror, pi.x, pj.x, x);
-        Number w = weight * kernel.W(root(product(x, x))) * pi.vol * pj.vol;
+        const auto of_j = [&](int k) FSI_INLINE_LAMBDA {
+          return Lanes<Number>::make([&](int n) {
+            return L[(size_t) N * j[n] + k];
+          });
+        };
+        Number w =
+            weight * kernel.W(root(product(x, x))) * (pi.vol * Li[N - 1]) * (pj.vol * of_j(N - 1));
         if constexpr (std::is_same_v<Number, double>)
           if (in.visible) w = as_visible(in, j, w);
         for (int k = 0; k < D * D; k++) {
-          const Number Lj = Lanes<Number>::make([&](int n) {
-            return L[(size_t) D * D * j[n] + k];
-          });
+          const Number Lj = of_j(k);
           of_i[k] += w * (Li[k] - sign[k] * Lj);
           on_j[k] = w * (Lj - sign[k] * Li[k]);
         }
@@ -179,7 +192,7 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
   constexpr int ROW = Sums<D>::ROW, N = Sym<D>::N;
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
   sums.assign((size_t) ROW * nall, 0.0);
-  gradients.assign((size_t) D * D * nall, 0.0);
+  gradients.assign((size_t) numbers_of(D) * nall, 0.0);
   for_rows<D>(pairs, of_level,
               [&](auto number, const auto &kernel, auto image, const std::vector<Row> &rows,
                   const Mirror &mirror, const FluidParticles &in, const PairSet &set) {
@@ -195,25 +208,28 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
   for (int i = 0; i < nlocal; i++) {
     if (disc.state[type[i]].species != FLUID) continue;
     const double *const s = &sums[(size_t) ROW * i];
-    double B[D * D], C[D * D], *const L = &gradients[(size_t) D * D * i];
+    double B[D * D], C[D * D], *const L = &gradients[(size_t) numbers_of(D) * i];
     for (int a = 0; a < D; a++)
       for (int b = 0; b < D; b++) B[a * D + b] = s[Sym<D>::id(a, b)];
     const double det = determinant<D>(B), vol = atom->rmass[i] / atom->rho[i];
-    if (std::fabs(det) < FEW * std::pow(vol, D)) continue;
+    const double part = std::fabs(det) / std::pow(vol, D);
+    if (part < FEW) continue;
     cofactor<D>(B, C);    // B is symmetric
     for (int a = 0; a < D; a++)
       for (int b = 0; b < D; b++)
         for (int c = 0; c < D; c++) L[a * D + b] += s[N + a * D + c] * C[c * D + b] / det;
+    L[D * D] = std::min(1.0, 2.0 * part);
   }
   sharpen<D>(pairs, of_level);
 }
 
 // What the kernel has smoothed is undone to first order (van Cittert; Stolz and Adams 1999):
-//   grad v_i += sum_j V_j W_ij (grad v_i - grad v_j)  over fluids and their images
+//   grad v_i += sum_j V_j W_ij (grad v_i - grad v_j)  over fluids and their images, as far as both
+// gradients are known
 template <int D> void Shear::sharpen(PairSets &pairs, const std::vector<FluidParticles> &of_level)
 {
   constexpr int ROW = D == 2 ? 4 : 12;    // the gradient by its components
-  ghosts.send(gradients.data(), D * D);
+  ghosts.send(gradients.data(), numbers_of(D));
   sums.assign((size_t) ROW * (atom->nlocal + atom->nghost), 0.0);
   for_rows<D>(pairs, of_level,
               [&](auto number, const auto &kernel, auto image, const std::vector<Row> &rows,
@@ -226,8 +242,13 @@ template <int D> void Shear::sharpen(PairSets &pairs, const std::vector<FluidPar
   ghosts.add(sums.data(), ROW);
   for (int i = 0; i < atom->nlocal; i++)
     for (int k = 0; k < D * D; k++)
-      gradients[(size_t) D * D * i + k] +=
+      gradients[(size_t) numbers_of(D) * i + k] +=
           sums[(size_t) ROW * i + k] * atom->rho[i] / atom->rmass[i];
+}
+
+const double *Shear::gradient(int i) const
+{
+  return &gradients[(size_t) numbers_of(disc.dim) * i];
 }
 
 double Shear::rate(int i) const

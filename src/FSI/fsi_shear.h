@@ -45,7 +45,7 @@ namespace FSI {
     // (Randles and Libersky 1996), without the kernel's smoothing. 0 where neighbors are too few.
     void find_gradients(PairSets &, const std::vector<FluidParticles> &of_level,
                         const ForceLaws &laws);
-    const double *gradient(int i) const { return &gradients[(size_t) i * disc.dim * disc.dim]; }
+    const double *gradient(int i) const;
     double rate(int i) const;                               // sqrt(2 D:D)
     void stress(int i, double eta, double *sigma) const;    // 2 eta D, as xx yy zz xy xz yz
 
