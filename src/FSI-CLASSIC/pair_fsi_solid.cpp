@@ -95,36 +95,23 @@ double PairFSISolid::artificial_stress() const
 }
 
 // calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops
-// are compiled for: those of quadratic gradients, and pairs one by one, for any kernel
+// are compiled for
 template <class F> void PairFSISolid::with_loops(F f) const
 {
-  const int kind = disc->kernel, dim = disc->dim;
-  const double h = disc->h;
-  const auto plain_or_linear = [&](auto packed, const auto &kernel) {
+  const auto with = [&](const auto &kernel) {
     constexpr int D = std::decay_t<decltype(kernel)>::DIM;
+    const auto with_terms = [&](auto terms) {
+      packs ? f(std::true_type(), kernel, terms) : f(std::false_type(), kernel, terms);
+    };
     if (gradient == PLAIN)
-      f(packed, kernel, std::integral_constant<int, 0>());
+      with_terms(std::integral_constant<int, 0>());
+    else if (gradient == CORRECTED_QUADRATIC)
+      with_terms(std::integral_constant<int, Gradient<D>::NQUADRATIC>());
     else
-      f(packed, kernel, std::integral_constant<int, D>());
+      with_terms(std::integral_constant<int, D>());
   };
-  const auto of_any_kernel = [&](const auto &kernel) {
-    constexpr int D = std::decay_t<decltype(kernel)>::DIM;
-    const std::integral_constant<int, Gradient<D>::NQUADRATIC> quadratic;
-    if (gradient != CORRECTED_QUADRATIC)
-      plain_or_linear(std::false_type(), kernel);
-    else if (packs)
-      f(std::true_type(), kernel, quadratic);
-    else
-      f(std::false_type(), kernel, quadratic);
-  };
-  if (packs && gradient != CORRECTED_QUADRATIC)
-    with_kernel(kind, dim, h, [&](const auto &kernel) {
-      plain_or_linear(std::true_type(), kernel);
-    });
-  else if (dim == 2)
-    of_any_kernel(AnyKernel<2>(kind, h));
-  else
-    of_any_kernel(AnyKernel<3>(kind, h));
+  disc->dim == 2 ? with(AnyKernel<2>(disc->kernel, disc->h))
+                 : with(AnyKernel<3>(disc->kernel, disc->h));
 }
 
 template <bool PACKED> using Numbers = std::conditional_t<PACKED, Pack, double>;
