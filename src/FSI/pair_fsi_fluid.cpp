@@ -68,7 +68,7 @@ struct PairFSIFluid::Members {
 };
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), couple(WALL), pairs(members->pairs),
+    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), pairs(members->pairs), couple(WALL),
     fade(nullptr), backfill(nullptr), backfill_weight(nullptr), fields(members->fields),
     rate(nullptr), beyond(nullptr), given_ghosts(0.0), raised_ghosts(-1.0), hybrid(nullptr),
     no_fdotr_before(0)
@@ -352,11 +352,11 @@ bool PairFSIFluid::has_all_pairs() const
 {
   auto *const all = dynamic_cast<PairHybrid *>(force->pair);
   if (!all) return false;
-  char name[] = "fsi/fluid";
+  char name[] = "fsi/fluid", threaded[] = "fsi/fluid/omp";    // as the script names it
   for (int a = 1; a <= atom->ntypes; a++)
     for (int b = a; b <= atom->ntypes; b++)
       if (setflag[a][b] && handles(material[a].species, material[b].species) &&
-          !all->check_ijtype(a, b, name))
+          !all->check_ijtype(a, b, name) && !all->check_ijtype(a, b, threaded))
         return false;
   return true;
 }
