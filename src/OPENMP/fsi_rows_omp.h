@@ -51,31 +51,22 @@ namespace FSI {
       if (what) std::rethrow_exception(what);
   }
 
+  inline int threads_of(const Comm *comm)
+  {
+#if defined(_OPENMP)
+    return comm->nthreads;
+#else
+    return comm != nullptr;
+#endif
+  }
+
   // particles [first, last)
   struct Span {
     int first, last;
     int size() const { return std::max(0, last - first); }
+    void add(const Span &o) { *this = {std::min(first, o.first), std::max(last, o.last)}; }
   };
-
-  // What rows of neighbors add to: from the lowest to the highest local particle, and ghost
-  inline std::vector<Span> touched_by(const Row *rows, const Row *end, int nlocal)
-  {
-    int least = nlocal, most = -1, least_ghost = INT_MAX, most_ghost = -1;
-    const auto touch = [&](int j) {    // without branches: packs of the compiler
-      least = std::min(least, j);
-      most = std::max(most, j < nlocal ? j : -1);
-      least_ghost = std::min(least_ghost, j < nlocal ? INT_MAX : j);
-      most_ghost = std::max(most_ghost, j);
-    };
-    for (const Row *row = rows; row != end; row++) {
-      touch(row->i);
-      for (int k = 0; k < row->n; k++) touch(row->j[k]);
-    }
-    std::vector<Span> found;
-    if (least <= most) found.push_back({least, most + 1});
-    if (least_ghost <= most_ghost) found.push_back({least_ghost, most_ghost + 1});
-    return found;
-  }
+  constexpr Span NOTHING = {INT_MAX, 0};
 
   class RowThreads : protected Pointers {
    public:
@@ -86,18 +77,8 @@ namespace FSI {
     };
 
     explicit RowThreads(LAMMPS *lmp) : Pointers(lmp) {}
-    int most() const
-    {
-#if defined(_OPENMP)
-      return comm->nthreads;
-#else
-      return 1;
-#endif
-    }
-    void forget()
-    {
-      first.clear();
-    }
+    int most() const { return threads_of(comm); }
+    void forget() { first.clear(); }
 
     // Calls loop(k, first, last, to) for part k of the rows, to what its sums go to. known: these
     // are the rows of the last call since forget(); else touched(begin, end) has the ranges that
@@ -134,11 +115,14 @@ namespace FSI {
       std::vector<double> sums[2];
       double *zeros(int a, const Sums &of)
       {
-        if (!of.to || touched.empty()) return nullptr;
-        const size_t size = (size_t) of.width * touched.back().last;
-        if (sums[a].size() < size) sums[a].resize(size + size / 8);
+        if (!of.to) return nullptr;
+        Span all = NOTHING;
+        for (const Span &r : touched) all.add(r);
+        if (sums[a].size() < (size_t) of.width * all.last)
+          sums[a].resize((size_t) of.width * (all.last + all.last / 8));
         for (const Span &r : touched)
-          std::fill_n(&sums[a][(size_t) of.width * r.first], (size_t) of.width * r.size(), 0.0);
+          for (size_t q = (size_t) of.width * r.first; q < (size_t) of.width * r.last; q++)
+            sums[a][q] = 0.0;
         return sums[a].data();
       }
     };
@@ -146,20 +130,21 @@ namespace FSI {
     int asked = 0;
     std::vector<Part> parts;
 
-    // into parts with about as many pairs each; in one where there are few, or where more would be
-    // to add up than is in the loops
+    // Into parts with about as many pairs each, by a sample of the rows; in one where there are few
+    // pairs, or where more would be to add up than is in the loops
     template <class R, class Touched> void cut(const R *rows, int nrows, Touched touched)
     {
       static constexpr bigint FEW = 1000, PER_PARTICLE = 4;
+      const int every = 1 + nrows / 8192;
       bigint pairs = 0, before = 0, more = 0;
-      for (int r = 0; r < nrows; r++) pairs += rows[r].n;
+      for (int r = 0; r < nrows; r += every) pairs += every * rows[r].n;
       asked = most();
       const int n = pairs < FEW ? 1 : asked;
       first = {0};
-      for (int r = 0; r < nrows; r++) {
+      for (int r = 0; r < nrows; r += every) {
         while ((int) first.size() < n && before * n >= pairs * (bigint) first.size())
           first.push_back(r);
-        before += rows[r].n;
+        before += every * rows[r].n;
       }
       first.resize(n, nrows);
       first.push_back(nrows);
@@ -176,10 +161,9 @@ namespace FSI {
     // slice s of n of all that is touched
     void add(int s, int n, int a, const Sums &sums) const
     {
-      Span all = {INT_MAX, 0};
+      Span all = NOTHING;
       for (int k = 1; k < n; k++)
-        for (const Span &r : parts[k].touched)
-          all = {std::min(all.first, r.first), std::max(all.last, r.last)};
+        for (const Span &r : parts[k].touched) all.add(r);
       const auto cut_at = [&](int of) {
         return all.first + (int) ((bigint) all.size() * of / n);
       };

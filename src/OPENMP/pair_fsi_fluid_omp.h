@@ -23,17 +23,16 @@ PairStyle(fsi/fluid/omp,PairFSIFluidOMP);
 #include "pair_fsi_fluid.h"
 
 namespace LAMMPS_NS {
-namespace FSI {
-  class RowThreads;
-}
 
 class PairFSIFluidOMP : public PairFSIFluid {
-  const std::shared_ptr<FSI::RowThreads> threads;
+  struct Members;
+  const std::unique_ptr<Members> members;
 
  public:
   PairFSIFluidOMP(class LAMMPS *);
   ~PairFSIFluidOMP() override;
   void init_style() override;
+  void begin_state(bool) override;
   double memory_usage() override;
 };
 
