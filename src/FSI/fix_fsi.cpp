@@ -322,9 +322,7 @@ template <int D> void FixFSI::drift()
 {
   Vector *const x = vectors(atom->x), *const v = vectors(atom->v);
   const int *const mask = atom->mask;
-  const double dth = 0.5 * update->dt;
-  const int bit = groupbit;
-  step.for_particles(atom->nlocal, [=](int i) {
+  step.for_particles(atom->nlocal, [=, bit = groupbit, dth = 0.5 * update->dt](int i) {
     if (mask[i] & bit)
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
   });
@@ -349,13 +347,10 @@ template <int D> void FixFSI::kick()
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
-  const bool no_solids = step.substeps > 1;
-  const int bit = groupbit;
   const State *const state = disc.state.data();
   double *const *const shift = step.shifts ? step.shift : nullptr;
-  step.for_particles(atom->nlocal, [=](int i) {
-    if (!(mask[i] & bit)) return;
-    if (no_solids && state[type[i]].species == SOLID) return;
+  step.for_particles(atom->nlocal, [=, bit = groupbit, no_solids = step.substeps > 1](int i) {
+    if (!(mask[i] & bit) || (no_solids && state[type[i]].species == SOLID)) return;
     const double dtfm = dtf / rmass[i];
     for (int d = 0; d < D; d++) {
       v[i][d] += dtfm * f[i][d];
