@@ -135,13 +135,16 @@ def channel(kept, turns):
 
 
 def ranks(kept, what, text, turns):
-    """Two ranks over one, by the clock; only where nothing else runs."""
-    one, two = in_turns(kept, [(text, 1), (text, 2)], turns)
-    pair = measure.Pair(two[0], one[0])
-    busy = min(one[2] + two[2])
+    """Two ranks and two threads over one, and these threads over these ranks, by the clock; only where nothing else runs."""
+    one, two, threads = in_turns(kept, [(text, 1), (text, 2), (f"package omp 2\nsuffix omp\n{text}", 1)], turns)
+    busy = min(one[2] + two[2] + [use / 2 for use in threads[2]])  # of a core by both threads
     quiet = busy > 0.95
-    say(f"cost:   2 ranks over 1, {what}: {pair.ratio:.2f}" + ("" if quiet else f"; the machine was busy, {busy:.0%} of a core: no measurement"))
-    return {"what": f"2 ranks over 1, {what}, by the clock", "ratio": pair.ratio if quiet else None, "spread": pair.spread if quiet else None}
+    rows = []
+    for label, fast, slow in (("2 ranks over 1", two, one), ("2 threads over 1", threads, one), ("2 threads over 2 ranks", threads, two)):
+        pair = measure.Pair(fast[0], slow[0])
+        say(f"cost:   {label}, {what}: {pair.ratio:.2f}" + ("" if quiet else f"; the machine was busy, {busy:.0%} of a core: no measurement"))
+        rows.append({"what": f"{label}, {what}, by the clock", "ratio": pair.ratio if quiet else None, "spread": pair.spread if quiet else None})
+    return rows
 
 
 def memory(kept):
@@ -215,8 +218,8 @@ def main(arguments):
     packages = build()
     rows = speeds(job.kept, packages, job.turns) + [
         channel(job.kept, job.turns),
-        ranks(job.kept, "100k particles", deck("water_fsi", {**WATER2D, "kernel": "wendland", "steps": 60}), job.turns),
-        ranks(job.kept, "elastic gate, dx = 1 mm, to 0.1 s", bundled("elastic_gate", tend=0.1), job.turns), memory(job.kept)]
+        *ranks(job.kept, "100k particles", deck("water_fsi", {**WATER2D, "kernel": "wendland", "steps": 60}), job.turns),
+        *ranks(job.kept, "elastic gate, dx = 1 mm, to 0.1 s", bundled("elastic_gate", tend=0.1), job.turns), memory(job.kept)]
     draw(job.folder / "peers.png", rows)
     job.write(COLUMNS, rows, 5, page(rows))
     return 0

@@ -259,9 +259,11 @@ def side_by_side(rows):
 
 def page(rows, pairs, more=()):
     """The page's text; pairs: rows of tools/cost peers, of which those of two ranks; more: points of its list."""
+    timed = [r for r in pairs if r["what"].startswith(("2 ranks", "2 threads")) and r["ratio"] is not None]
+    threads = " and two threads (`-sf omp -pk omp 2`)" if any(r["what"].startswith("2 threads") for r in timed) else ""
     lines = ["# Several ranks", "",
              "Forces are the same on any number of MPI ranks, to round-off.",
-             "Two ranks are timed (`tools/cost peers`). Of more, work and messages are counted (`tools/cost scaling`).", "",
+             f"Two ranks{threads} are timed (`tools/cost peers`). Of more, work and messages are counted (`tools/cost scaling`).", "",
              "![Bytes of a particle](scaling.png)", "",
              "- Bytes of a particle: still water in 3D, Wendland 1.5, skin 0.3 dx, five walls, one rank.",
              "- Temporary memory: the peak, at writing the restart file, minus the other rows.",
@@ -270,7 +272,7 @@ def page(rows, pairs, more=()):
              "- Balance: a dam break in a half-empty tank, 1,250 particles, two ranks.",
              "- With the box cut in halves two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
              *more, "", "| quantity | value |", "|---|---:|"]
-    lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in pairs if r["what"].startswith("2 ranks") and r["ratio"] is not None]
+    lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in timed]
     lines += [f"| {what} | {'; '.join(map(in_words, values))} |" for what, values in side_by_side(rows) if not re.search(r", \d+ ranks$|, model", what)]
     return "\n".join(lines) + "\n"
 

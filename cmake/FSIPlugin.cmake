@@ -5,7 +5,7 @@ set_target_properties(fsiplugin PROPERTIES PREFIX "" SUFFIX ".so" LIBRARY_OUTPUT
 target_compile_features(fsiplugin PRIVATE cxx_std_17)
 target_compile_options(fsiplugin PRIVATE ${FSI_INSTRUMENT})
 fsi_compile_as_lammps(fsiplugin)
-target_link_libraries(fsiplugin PRIVATE ${FSI_FFTW})
+target_link_libraries(fsiplugin PRIVATE ${FSI_FFTW} ${OpenMP_CXX_LIBRARIES})
 if(APPLE)
   target_link_options(fsiplugin PRIVATE "LINKER:-undefined,dynamic_lookup")
 else()

@@ -1,4 +1,4 @@
-# Adds LAMMPS as a subproject with the styles of src/FSI and src/FSI-CLASSIC in its style headers. No patch: LAMMPS' own
+# Adds LAMMPS as a subproject with the styles of FSI_SOURCE_DIRS in its style headers. No patch: LAMMPS' own
 # RegisterStyles() collects our headers before its CMakeLists writes style_*.h.
 option(FSI_COMPILED_IN "The package is part of LAMMPS (OFF: of the plugin only)" ON)
 
@@ -7,7 +7,9 @@ foreach(pkg RIGID GRANULAR PLUGIN GRAPHICS)
   option(PKG_${pkg} "LAMMPS package ${pkg}" ON)
 endforeach()
 option(BUILD_SHARED_LIBS "Build liblammps as a shared library (Python, plugins)" ON)
-option(BUILD_OMP "Build with OpenMP" OFF)
+# threads, which the styles of src/OPENMP take from LAMMPS
+option(BUILD_OMP "Build with OpenMP" ${OpenMP_CXX_FOUND})
+option(PKG_OPENMP "LAMMPS package OPENMP" ${BUILD_OMP})
 option(BUILD_TOOLS "Build LAMMPS' tools" OFF)
 
 include("${LAMMPS_SOURCE_DIR}/cmake/Modules/StyleHeaderUtils.cmake")
@@ -30,7 +32,7 @@ fsi_compile_as_lammps(fsi)
 if(FSI_COMPILED_IN)
   target_sources(lammps PRIVATE $<TARGET_OBJECTS:fsi>)
   target_include_directories(lammps PRIVATE ${FSI_SOURCE_DIRS})
-  target_link_libraries(lammps PRIVATE ${FSI_FFTW})
+  target_link_libraries(lammps PRIVATE ${FSI_FFTW} ${OpenMP_CXX_LIBRARIES})
 endif()
 if(FSI_COVERAGE)
   target_link_options(lammps PUBLIC --coverage)

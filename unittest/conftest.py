@@ -12,6 +12,7 @@ os.environ["PYTHONPATH"] = os.pathsep.join([os.path.dirname(__file__), *filter(N
 # start it looks for no networks and, without mpirun, starts no server; and who ends with an error gives nobody a second to think about it
 for name, value in {"mpi_yield_when_idle": "1", "pml": "ob1", "btl": "self,vader", "ess_singleton_isolated": "1", "odls_base_sigkill_timeout": "0"}.items():
     os.environ.setdefault(f"OMPI_MCA_{name}", value)
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # so do threads
 # its folder of sessions is removed by who leaves it empty, maybe while another process begins one there: one for each worker
 os.environ["OMPI_MCA_orte_tmpdir_base"] = tempfile.mkdtemp(prefix="fsi_mpi_")
 

@@ -322,10 +322,10 @@ template <int D> void FixFSI::drift()
 {
   Vector *const x = vectors(atom->x), *const v = vectors(atom->v);
   const int *const mask = atom->mask;
-  const double dth = 0.5 * update->dt;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (mask[i] & groupbit)
+  step.for_particles(atom->nlocal, [=, bit = groupbit, dth = 0.5 * update->dt](int i) {
+    if (mask[i] & bit)
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
+  });
 }
 
 // paper eqs. 17 and 18: kick, and drift to the end of the step
@@ -347,18 +347,18 @@ template <int D> void FixFSI::kick()
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
-  const bool no_solids = step.substeps > 1;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit)) continue;
-    if (no_solids && disc.state[type[i]].species == SOLID) continue;
+  const State *const state = disc.state.data();
+  double *const *const shift = step.shifts ? step.shift : nullptr;
+  step.for_particles(atom->nlocal, [=, bit = groupbit, no_solids = step.substeps > 1](int i) {
+    if (!(mask[i] & bit) || (no_solids && state[type[i]].species == SOLID)) return;
     const double dtfm = dtf / rmass[i];
     for (int d = 0; d < D; d++) {
       v[i][d] += dtfm * f[i][d];
       x[i][d] += dth * v[i][d];
     }
-    if (step.shifts && disc.state[type[i]].species == FLUID)
-      for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += step.shift[i][d];
-  }
+    if (shift && state[type[i]].species == FLUID)
+      for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
+  });
   members->others.turn(dt);
 }
 

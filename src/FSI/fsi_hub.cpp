@@ -179,10 +179,10 @@ void StepState::find_near_walls(const Atom *atom, const Discretization &disc)
   const int nall = atom->nlocal + atom->nghost;
   const Vector *const x = vectors(atom->x);
   const InnerBox inner(walls.wall, disc.cut);
-  for (int i = 0; i < nall; i++) {
+  for_particles(nall, [=, &inner, &disc](int i) {
     const bool none = inner.contains(x[i]) || disc.state[atom->type[i]].species == RIGID;
     wmask[i] = none ? 0 : walls.near(x[i], disc.cut);
-  }
+  });
 }
 
 std::vector<std::string> Discretization::density_names(int species)

@@ -23,6 +23,7 @@
 #include "fsi_material.h"
 #include "fsi_walls.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -123,7 +124,17 @@ namespace FSI {
 
     BodyForces body_forces;
     Profile *profile = nullptr;    // of fix fsi/report; null: there is none
-    int substeps = 1;              // of total-Lagrangian solids: as given or chosen by fix fsi/dt
+    // of an /omp style: calls loop(first, last) in threads, for parts of n particles; or null
+    std::function<void(int n, const std::function<void(int, int)> &loop)> threads;
+    // each(i) for i below n
+    template <class Each> void for_particles(int n, Each each) const
+    {
+      const auto loop = [=](int first, int last) {
+        for (int i = first; i < last; i++) each(i);
+      };
+      threads ? threads(n, loop) : loop(0, n);
+    }
+    int substeps = 1;    // of total-Lagrangian solids: as given or chosen by fix fsi/dt
     bool takes_substeps(LAMMPS *) const;    // or may take
     // What moves by rates between the middles of two steps takes update->dt + dt_offset: their
     // distance, where dt has changed, by a command between runs, too. substep_offset: likewise of

@@ -224,9 +224,10 @@ std::vector<std::shared_ptr<RigidBodies>> FSI::rigid_bodies(LAMMPS *lmp)
 {
   std::vector<std::shared_ptr<RigidBodies>> found;
   for (auto *fix : lmp->modify->get_fix_by_style("^rigid"))
-    if (utils::strmatch(fix->style, "^rigid/small$"))
+    if (utils::strmatch(fix->style, "^rigid/small$") ||
+        utils::strmatch(fix->style, "^rigid/small/omp$"))
       found.push_back(std::make_shared<SmallBodies>(fix, lmp->atom));
-    else if (utils::strmatch(fix->style, "^rigid$"))
+    else if (utils::strmatch(fix->style, "^rigid$") || utils::strmatch(fix->style, "^rigid/omp$"))
       found.push_back(std::make_shared<LargeBodies>(fix));
   return found;
 }

@@ -117,12 +117,14 @@ namespace FSI {
     }
   };
 
-  // m of the rows' particles
+  // m of the particles of rows first to last - 1
   template <class T, class Law, int D>
-  FSI_INLINE void find_volumetric_strains(const std::vector<BondRow> &rows, const int *type,
-                                          const double *points, VolumetricStrain &s)
+  FSI_INLINE void find_volumetric_strains(const std::vector<BondRow> &rows, int first, int last,
+                                          const int *type, const double *points,
+                                          VolumetricStrain &s)
   {
-    for (const BondRow &row : rows) {
+    for (int r = first; r < last; r++) {
+      const BondRow &row = rows[r];
       if (s.modulus[type[row.i]] == 0.0) continue;
       double F[D * D];
       deform_row<T, D, false>(row, points, F);
@@ -130,17 +132,18 @@ namespace FSI {
     }
   }
 
-  // theta of the rows' particles, where it counts or of all; adds to q of them and of their
-  // partners; the energy
+  // theta of the particles of these rows, where it counts or of all; adds to force, q of them and
+  // of their partners; the energy
   template <class T, class Law>
-  FSI_INLINE double smooth_volumetric_strains(const std::vector<BondRow> &rows, bool of_all,
-                                              VolumetricStrain &s)
+  FSI_INLINE double smooth_volumetric_strains(const std::vector<BondRow> &rows, int first, int last,
+                                              bool of_all, VolumetricStrain &s, double *force)
   {
     using L = Lanes<T>;
     constexpr int W = L::WIDTH;
     double energy = 0.0;
     const double *next = s.weight.data();
-    for (size_t r = 0; r < rows.size(); r++) {
+    for (int r = 0; r < first; r++) next += whole_blocks(rows[r].n);
+    for (int r = first; r < last; r++) {
       const BondRow &row = rows[r];
       const double k = s.stiffness[r], *const w = next;
       next += whole_blocks(row.n);
@@ -153,9 +156,8 @@ namespace FSI {
       if (k == 0.0) continue;
       const double q = k * Law::volumetric_slope(theta);
       energy += k * Law::volumetric_energy(theta);
-      for (int n = 0; n < row.n; n += W)
-        L::add(q * L::load(w + n), s.force.data(), row.partner + n);
-      s.force[row.i] += q * s.own[r];
+      for (int n = 0; n < row.n; n += W) L::add(q * L::load(w + n), force, row.partner + n);
+      force[row.i] += q * s.own[r];
     }
     return energy;
   }

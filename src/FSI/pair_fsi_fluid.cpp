@@ -68,7 +68,7 @@ struct PairFSIFluid::Members {
 };
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), couple(WALL), pairs(members->pairs),
+    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), pairs(members->pairs), couple(WALL),
     fade(nullptr), backfill(nullptr), backfill_weight(nullptr), fields(members->fields),
     rate(nullptr), beyond(nullptr), given_ghosts(0.0), raised_ghosts(-1.0), hybrid(nullptr),
     no_fdotr_before(0)
@@ -283,6 +283,7 @@ void PairFSIFluid::init_style()
   members->shear.emplace(lmp, *disc, *step, *ghosts, eddies);
   members->implicit.emplace(lmp, *disc, *step, *ghosts);
   step->viscosity = nullptr;
+  step->threads = nullptr;
   find_ratios();
   const bool mirrors = any_is(fixes_of<Part>(lmp), &Facts::mirror_walls);
   take_virial(force->pair != this && mirrors ? force->pair : nullptr);
@@ -352,11 +353,11 @@ bool PairFSIFluid::has_all_pairs() const
 {
   auto *const all = dynamic_cast<PairHybrid *>(force->pair);
   if (!all) return false;
-  char name[] = "fsi/fluid";
+  char name[] = "fsi/fluid", threaded[] = "fsi/fluid/omp";    // as the script names it
   for (int a = 1; a <= atom->ntypes; a++)
     for (int b = a; b <= atom->ntypes; b++)
       if (setflag[a][b] && handles(material[a].species, material[b].species) &&
-          !all->check_ijtype(a, b, name))
+          !all->check_ijtype(a, b, name) && !all->check_ijtype(a, b, threaded))
         return false;
   return true;
 }
@@ -514,14 +515,16 @@ void PairFSIFluid::advance_density()
 {
   double *const rho = atom->rho;
   const int *const type = atom->type;
-  const double dt = update->dt + step->dt_offset;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = disc->state[type[i]];
-    if (s.species != FLUID) continue;
-    const double next = rho[i] + dt * rate[i], alone = atom->rmass[i] * s.w0;
-    if (next < alone) rate[i] = (alone - rho[i]) / dt;    // what go_back() takes
+  const double dt = update->dt + step->dt_offset, *const rmass = atom->rmass;
+  const State *const state = disc->state.data();
+  double *const rates = rate;
+  step->for_particles(atom->nlocal, [=](int i) {
+    const State &s = state[type[i]];
+    if (s.species != FLUID) return;
+    const double next = rho[i] + dt * rates[i], alone = rmass[i] * s.w0;
+    if (next < alone) rates[i] = (alone - rho[i]) / dt;    // what go_back() takes
     rho[i] = std::max(next, alone);
-  }
+  });
 }
 
 // fluid particles by level, as the last loop had them
@@ -648,7 +651,7 @@ template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, C
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
   const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   const double *const rho = atom->rho, *const rmass = atom->rmass;
-  for (int i = 0; i < nall; i++) {
+  step->for_particles(nall, [=](int i) {
     Point<D> &p = point[i];
     for (int d = 0; d < D; d++) {
       p.v[d] = v[i][d];
@@ -657,7 +660,7 @@ template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, C
     p.rho = rho[i];
     p.vol = rmass[i] / p.rho;
     complete(i, p);
-  }
+  });
   return particles_at(points.data());
 }
 
@@ -958,8 +961,10 @@ template <int D> void PairFSIFluid::compute_forces()
 
   // LAMMPS sends what ghosts have home even without newton_pair, if newton_bond is on
   auto *const f = vectors(atom->f);
-  for (int i = 0; i < (force->newton_pair ? nall : atom->nlocal); i++)
-    for (int d = 0; d < D; d++) f[i][d] += forces[ROW * i + d];
+  const double *const found = forces.data();
+  step->for_particles(force->newton_pair ? nall : atom->nlocal, [=](int i) {
+    for (int d = 0; d < D; d++) f[i][d] += found[ROW * i + d];
+  });
   ledger->tally(Ledger::ARTIFICIAL, sums.artificial);
   ledger->tally(Ledger::LAMINAR, sums.laminar);
   ledger->tally(Ledger::COUPLING, sums.coupling);

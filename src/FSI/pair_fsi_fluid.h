@@ -94,6 +94,7 @@ class PairFSIFluid : public PairFSI {
   }
   bool defines(int species) const override { return species != FSI::NONE; }
   FSI::State make_state(const FSI::Material &) const override;
+  FSI::PairSets &pairs;
 
  private:
   // settings
@@ -115,7 +116,6 @@ class PairFSIFluid : public PairFSI {
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  FSI::PairSets &pairs;
   void check_effects(const FSI::Facts &of_solids) const;
   bool has_all_pairs() const;
   // local and ghost, gathered at the start of each loop

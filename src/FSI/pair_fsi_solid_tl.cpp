@@ -316,6 +316,11 @@ void PairFSISolidTL::find_rows()
   nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();
 }
 
+void PairFSISolidTL::over_rows(int n, double *to, int, BondSums &sums, const RowLoop &loop)
+{
+  loop(0, n, to, sums);
+}
+
 // points, and forces of zero
 template <int D> void PairFSISolidTL::gather_points()
 {
@@ -382,13 +387,14 @@ double PairFSISolidTL::smooth_strains(bool of_all)
   with_law([&](const auto *law_of, auto dimension) {
     using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
-    const auto find = [&](auto number) FSI_INLINE_LAMBDA {
-      find_volumetric_strains<decltype(number), L, D>(rows, atom->type, points.data(), smoothed);
-    };
-    const auto smooth = [&](auto number) FSI_INLINE_LAMBDA {
-      energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
-    };
-    have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
+    BondSums sums;
+    over_rows(rows.size(), nullptr, 0, sums, [&](int first, int last, double *, BondSums &) {
+      const auto find = [&](auto number) FSI_INLINE_LAMBDA {
+        find_volumetric_strains<decltype(number), L, D>(rows, first, last, atom->type,
+                                                        points.data(), smoothed);
+      };
+      have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
+    });
     exchange(step->profile, comm, [this]() {
       reference->swaps.forward<Pair>(this, 1);
     });
@@ -398,7 +404,15 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       smoothed.strain[k] = smoothed.strain[of];
       smoothed.force[k] = 0.0;
     });
-    have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
+    over_rows(rows.size(), smoothed.force.data(), 1, sums,
+              [&](int first, int last, double *to, BondSums &of_part) {
+                const auto smooth = [&](auto number) FSI_INLINE_LAMBDA {
+                  of_part.energy += smooth_volumetric_strains<decltype(number), L>(
+                      rows, first, last, of_all, smoothed, to);
+                };
+                have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
+              });
+    energy = sums.energy;
     images.for_each([&](int k, int of, const Mirror &, bool) {
       smoothed.force[of] += smoothed.force[k];
     });
@@ -421,21 +435,27 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   BondSums sums;
   const double *const volumetric_forces = smoothed.on() ? smoothed.force.data() : nullptr;
   const BondArguments in = {points.data(), type, state,        history(), volumetric_forces,
-                            alpha,         beta, one_material, &sums};
-  auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid ? fsolid[0] : nullptr);
+                            alpha,         beta, one_material, nullptr};
   // with sums, or one by one, there is one loop for all effects: those that are off have
   // coefficients of zero
   const bool packs = have_packs() && (one_material || !has_artificial());
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
-  with_flags<ALL>(ledger->kept || vflag_global || !packs ? ALL : named, [&](auto which) {
-    if constexpr (!(which() & SUMS) || which() == ALL) {
-      const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
-        bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f);
-      };
-      if (packs) return run_loop<Pack>(loop);
-      if constexpr (which() == ALL) run_loop<double>(loop);
-    }
-  });
+  const auto part = [&](int first, int last, double *to, BondSums &of_part) {
+    BondArguments own = in;
+    own.sums = &of_part;
+    auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(to);
+    with_flags<ALL>(ledger->kept || vflag_global || !packs ? ALL : named, [&](auto which) {
+      if constexpr (!(which() & SUMS) || which() == ALL) {
+        const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
+          bond_rows<decltype(number), L, D, which()>(rows.data() + first, last - first, law_of, own,
+                                                     f);
+        };
+        if (packs) return run_loop<Pack>(loop);
+        if constexpr (which() == ALL) run_loop<double>(loop);
+      }
+    });
+  };
+  over_rows(nrows, fsolid ? fsolid[0] : nullptr, row_of_forces(D), sums, part);
   strain_energy = sums.energy;
   // fragments of a body that damage tears have few bonds, whose F may be anything
   if (sums.inverted >= 0 && damage == 0.0) {
@@ -621,18 +641,23 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
   std::vector<decltype(law_of->factors(dt))> factors;    // per type
   for (int t = 0; t <= atom->ntypes; t++) factors.push_back(law_of[t].factors(dt));
   gather_points<D>();
-  double dissipated = 0.0;
-  const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
-    for (const BondRow &row : rows) {
-      const int t = atom->type[row.i];
-      double F[D * D];
-      deform_row<decltype(number), D, false>(row, points.data(), F);
-      dissipated +=
-          row.volume * law_of[t].template advance<D>(F, factors[t], fix_history->of[row.i]);
-    }
-  };
-  have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
-  if (ledger->kept) ledger->energy_out[Ledger::INELASTIC] += dissipated;
+  BondSums sums;    // energy: dissipated
+  over_rows(rows.size(), nullptr, 0, sums, [&](int first, int last, double *, BondSums &of_part) {
+    double dissipated = 0.0;
+    const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
+      for (int r = first; r < last; r++) {
+        const BondRow &row = rows[r];
+        const int t = atom->type[row.i];
+        double F[D * D];
+        deform_row<decltype(number), D, false>(row, points.data(), F);
+        dissipated +=
+            row.volume * law_of[t].template advance<D>(F, factors[t], fix_history->of[row.i]);
+      }
+    };
+    have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
+    of_part.energy += dissipated;
+  });
+  if (ledger->kept) ledger->energy_out[Ledger::INELASTIC] += sums.energy;
 }
 
 // L = F' F^-1 at the time of the velocities, half a step before the positions

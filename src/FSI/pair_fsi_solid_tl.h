@@ -23,12 +23,14 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 #include "pair_fsi.h"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
   struct BondRow;
+  struct BondSums;
   class Check;
   class Clamps;
   struct Contact;
@@ -99,6 +101,15 @@ class PairFSISolidTL : public PairFSI {
   bool needs_neighbors() override { return several_bodies(); }
   FSI::State make_state(const FSI::Material &) const override;
 
+  // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces
+  // are seen from outside
+  std::vector<FSI::BondRow> rows;
+  virtual void find_rows();
+  // Calls loop(first, last, to, sums) for the rows from first to last - 1 of the first n: here at
+  // once, in an /omp style in parts. to: what the loop adds to, width numbers per particle, or null
+  using RowLoop = std::function<void(int first, int last, double *to, FSI::BondSums &)>;
+  virtual void over_rows(int n, double *to, int width, FSI::BondSums &, const RowLoop &loop);
+
  private:
   enum Volumetric { AUTO, SMOOTHED, LOCAL };
   double zeta, damage;
@@ -121,13 +132,9 @@ class PairFSISolidTL : public PairFSI {
   void make_laws();
   // per particle, stress of rates or the law's own; or null
   const double *const *history() const;
-  // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces
-  // are seen from outside
-  std::vector<FSI::BondRow> rows;
-  int nmoving, changes_seen;    // how many do not; when they were found
+  int nmoving, changes_seen;    // rows that act not on held particles alone; when they were found
   // forces of those are wanted; all solids have one density and one speed of sound
   bool only_moving, one_material;
-  void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <int D> void gather_points();
   FSI::VolumetricStrain &smoothed;

@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The FSI packages as a plugin: every style of src/FSI and src/FSI-CLASSIC, for a LAMMPS without.
+// The FSI packages as a plugin: every style of src/FSI, src/FSI-CLASSIC and src/OPENMP, for a LAMMPS without.
 
 #include "lammpsplugin.h"
 
@@ -41,10 +41,10 @@
 #include "fsi_set.h"
 #include "lammps.h"
 #include "library.h"
-#include "pair_fsi_fluid.h"
+#include "pair_fsi_fluid_omp.h"
 #include "pair_fsi_grain.h"
 #include "pair_fsi_solid.h"
-#include "pair_fsi_solid_tl.h"
+#include "pair_fsi_solid_tl_omp.h"
 #include "utils.h"
 #include "version.h"
 
@@ -128,9 +128,11 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   };
   // pair styles first: they are unloaded in this order, and use the fixes until they go
   one("pair", "fsi/fluid", &create<PairFSIFluid>);
+  one("pair", "fsi/fluid/omp", &create<PairFSIFluidOMP>);
   one("pair", "fsi/grain", &create<PairFSIGrain>);
   one("pair", "fsi/solid", &create<PairFSISolid>);
   one("pair", "fsi/solid/tl", &create<PairFSISolidTL>);
+  one("pair", "fsi/solid/tl/omp", &create<PairFSISolidTLOMP>);
   two("compute", "fsi/atom", &create_with_arguments<ComputeFSIAtom>);
   two("compute", "fsi/energy", &create_with_arguments<ComputeFSIEnergy>);
   two("compute", "fsi/force", &create_with_arguments<ComputeFSIForce>);

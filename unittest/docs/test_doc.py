@@ -13,7 +13,7 @@ COMMANDS = ("fsi_clamp", "fsi_displace", "fsi_dump", "fsi_material", "fsi_pack",
 PAGES = paths.ROOT / "doc/src"
 SOURCES = paths.sources()
 STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in paths.sources("*.h").values()
-          for kind, name in re.findall(r"^(Pair|Fix|Compute|Command|Atom)Style\(([^,]+),", header.read_text(), re.M)}
+          for kind, name in re.findall(r"^(Pair|Fix|Compute|Command|Atom)Style\(((?:(?!/omp,)[^,])+),", header.read_text(), re.M)}
 STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
 for name in COMMANDS:
     STYLES.pop(f"command_{name}")

@@ -49,6 +49,7 @@ class PairScene:
     watched: bool = False    # every output of the package, in every step
     cut: bool = False        # each run in two
     balanced: bool = False    # ranks of tiles that move
+    threads: int = 0         # of styles with suffix omp; 0: the plain ones
 
     @cached_property
     def has(self):
@@ -340,7 +341,8 @@ group spot intersect spot water
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)
-        return turned(f"""{self.head(f'{folder}/scene.data')}
+        return turned(f"""{f'package omp {self.threads}{chr(10)}suffix omp' if self.threads else ''}
+{self.head(f'{folder}/scene.data')}
 {self.pair}
 {self.physics()}
 {self.outputs() if self.watched else ''}

@@ -126,6 +126,10 @@ def four_ranks(r):
     same(r.scene, r.base, go_on_ranks(r.scene, r.folder / "four", 4), ROUND)
 
 
+def threads(r):
+    same(r.scene, r.base, r.other(threads=2), ROUND)
+
+
 def balanced(r):
     same(r.scene, r.base, go_on_ranks(replace(r.scene, balanced=True), r.folder / "balanced", 2), ROUND)
 
@@ -201,7 +205,7 @@ def galilei(r):
     same(r.scene, r.base, other, ROUND)
 
 
-INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut),
+INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "threads": (ordered, threads), "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut),
               "numbering": (no_levels, numbering), "mirror": (ordered, mirror), "restart": (always, restart), "momentum": (alone, momentum), "frame": (drifts, galilei)}
 SAMPLE = {"four ranks": 8, "balanced": 3}    # asked of one scene in so many
 
@@ -283,7 +287,8 @@ def words_of_pages():
         text = page.read_text()
         syntax = re.search(r'\nSyntax\n"+\n(.*?)\nExamples\n"', text, re.S)
         if syntax:
-            styles = {re.sub(r" command$", "", name).split()[-1] for name in re.findall(r"^\.\. index:: (.*)$", text, re.M)}
+            # "threads" has those with suffix omp
+            styles = {re.sub(r" command$|/omp$", "", name).split()[-1] for name in re.findall(r"^\.\. index:: (.*)$", text, re.M)}
             found[page.stem] = styles, set(re.findall(r"\*([a-z][a-z/]*\d?)\*", syntax[1])) | styles
     return found
 

@@ -50,7 +50,7 @@ def test_no_circle():
 def test_style_headers_are_bare():
     """LAMMPS' rule: the header of a style includes those of its base classes alone, each of which its class statement names."""
     names = {"fix": "Fix", "pair": "Pair", "compute": "Compute", "command": "Command", "atom_vec": "AtomVec", "fsi_part": "FSI::Part",
-             "pair_fsi": "PairFSI", "fsi_fields": "FSI::FixFields", "fsi_bond_store": "FSI::BondStore"}
+             "pair_fsi": "PairFSI", "pair_fsi_fluid": "PairFSIFluid", "pair_fsi_solid_tl": "PairFSISolidTL", "fsi_fields": "FSI::FixFields", "fsi_bond_store": "FSI::BondStore"}
     styles, more = 0, {}
     for file in paths.sources("*.h").values():
         text = file.read_text()
@@ -73,11 +73,11 @@ def test_no_style_keeps_fix_fsi():
     assert len(headers) > 80 and [file.name for file in headers if re.search(r"\bFixFSI\b", file.read_text())] == []
 
 
-def test_the_classic_package_is_apart():
-    """FSI is built without it."""
-    classic = {path.stem for path in SOURCES.values() if path.parent.name == "FSI-CLASSIC"}
-    assert "pair_fsi_solid" in classic
-    assert [path.stem for path in SOURCES.values() if path.parent.name == "FSI" and includes(path.stem) & classic] == []
+def test_other_packages_are_apart():
+    """FSI is built without them."""
+    others = {path.stem for path in SOURCES.values() if path.parent.name in ("FSI-CLASSIC", "OPENMP")}
+    assert {"pair_fsi_solid", "pair_fsi_fluid_omp"} <= others
+    assert [path.stem for path in SOURCES.values() if path.parent.name == "FSI" and includes(path.stem) & others] == []
 
 
 def test_styles_are_found_by_what_they_are():

@@ -20,7 +20,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = {path.name: path for package in ("FSI", "FSI-CLASSIC") for path in (ROOT / "src" / package).iterdir()}
+SOURCES = {path.name: path for package in ("FSI", "FSI-CLASSIC", "OPENMP") for path in (ROOT / "src" / package).iterdir()}
 
 # files with numerics, by pattern (the first that fits): the tests that look at them, test_NAME.py, or ctest
 TESTS = {
@@ -29,6 +29,7 @@ TESTS = {
     "fsi_classic_laws.h": "ctest solid solid_tl",
     "fsi_pair_laws.h": "ctest viscosity walls density shift contact self_contact", "fsi_material.*": "ctest density solid", "fsi_sight.cpp": "thin",
     "fsi_fluid_*": "density momentum walls surface interface viscosity wall_particles shift spacing",
+    "fsi_rows_omp.h": "omp", "pair_fsi_*_omp.*": "omp",
     "fsi_pair_sets.*": "walls thin lists", "fsi_wet_solids.cpp": "walls solid_tl",
     "pair_fsi_fluid.cpp": "density integrator dt interface surface wall_particles shift",
     "pair_fsi_solid.*": "solid integrator energy momentum", "pair_fsi_solid_tl.*": "solid_tl energy report contact",

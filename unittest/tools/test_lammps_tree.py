@@ -38,11 +38,12 @@ def left_out():
 
 
 def test_sources_are_all_there(tree):
-    for package, one in (("FSI", "fix_fsi.cpp"), ("FSI-CLASSIC", "pair_fsi_solid.cpp")):
+    for package, some in (("FSI", {"README", "fix_fsi.cpp"}), ("FSI-CLASSIC", {"README", "pair_fsi_solid.cpp"}),
+                          ("OPENMP", {"pair_fsi_fluid_omp.cpp"})):
         sources = {path.name: path.read_text()
                    for path in (paths.ROOT / "src" / package).glob("[!.]*")}
         assert {path.name: path.read_text() for path in (tree / "src" / package).iterdir()} == sources
-        assert {"README", one} <= set(sources)
+        assert some <= set(sources)
         ignored = set((tree / "src/.gitignore").read_text().split())
         assert {f"/{name}" for name in sources if name != "README"} <= ignored
 
@@ -55,6 +56,7 @@ def test_sources_are_all_there(tree):
     ("doc/src/Build_extras.rst", ".. _fsi:"), (PACKAGES, "   * - :ref:`FSI <PKG-FSI>`"),
     ("cmake/CMakeLists.txt", "  FSI-CLASSIC"), ("src/Makefile", "\tfsi-classic \\"),
     ("cmake/CMakeLists.txt", "pkg_depends(FSI-CLASSIC FSI)"),
+    ("doc/src/Commands_pair.rst", "   * :doc:`fsi/fluid (o) <pair_fsi_fluid>`"),
     (PACKAGES, "   * - :ref:`FSI-CLASSIC <PKG-FSI-CLASSIC>`"),
     ("doc/src/Packages_details.rst", ".. _PKG-FSI-CLASSIC:"),
     ("doc/src/Packages_details.rst", ".. _PKG-FSI:"), ("doc/src/Howto.rst", "   Howto_fsi"),

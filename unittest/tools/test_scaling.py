@@ -48,7 +48,10 @@ def test_pages_hold_their_rows():
     assert "| Water | shifting | +25.0% |  | +50% ± 1% | +40 |  | +8.0 |  |" in text and "{" not in text
     assert "| artificial stress | +25.0% |  |" in effects.page([row, solid], [])  # what tools/cost effects shows alone
     assert "| artificial stress | +25.0% | +50.0% |" in text and text.count("| Solid | ") == len(solid_variants.FORMS)
-    text = scaling.page([{"what": "compute", "value": 1e-6, "unit": "s"}, {"what": "bytes", "value": 98.0, "unit": "B"}], [PEER, ALONE, {**ALONE, "ratio": None}])
+    sizes = [{"what": "compute", "value": 1e-6, "unit": "s"}, {"what": "bytes", "value": 98.0, "unit": "B"}]
+    text = scaling.page(sizes, [PEER, ALONE, {**ALONE, "ratio": None}])
+    threads = scaling.page(sizes, [ALONE, {**ALONE, "what": "2 threads over 2 ranks, water, by the clock"}])
+    assert "Two ranks are timed" in text and "and two threads" in threads and "| 2 threads over 2 ranks, water, by the clock | 1.70 ± 0.10 |" in threads
     shared = [{"what": f"{label}, {ranks} ranks: ghosts over particles", "value": 0.1 * ranks, "unit": ""} for label in ("gate", "dam, 3D") for ranks in (2, 4)]
     ranks = scaling.page([row for n in shared for row in (n, {"what": "messages", "value": 8, "unit": ""}, {"what": "bytes sent", "value": 17920.0, "unit": "B"})], [])
     assert "| gate" not in ranks and "| dam" not in ranks  # these are in the table
