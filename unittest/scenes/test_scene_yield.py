@@ -53,10 +53,10 @@ def test_power_law_in_a_channel(tmp_path):
 
 
 def test_yield_stress_in_a_channel(tmp_path):
-    # 20 rows, of which 5 yield at either wall: a kernel smooths the rate over one of them. Center of the law with m = 100:
+    # 20 rows, of which 5 yield at either wall. Center, +0.1 % (with the kernel's smoothing of the rate +1.8 %), of the law with m = 100:
     # (1-0.5)^2/2 + 0.5/100. Stopping times: finite differences, those of the scene's analysis for the regularized law
     figures = run_scene(tmp_path, "yield_channel", rows=20, tend=3)
-    assert figures["center_velocity"] == pytest.approx(0.13, rel=0.03)
+    assert figures["center_velocity"] == pytest.approx(0.13, rel=0.01)
     assert figures["stops_0.1"] == pytest.approx(0.133, rel=0.03)
     assert figures["stops_0.01"] == pytest.approx(0.160, rel=0.03)
 

@@ -159,11 +159,11 @@ def papanastasiou(tau, m):
 
 
 @pytest.mark.parametrize("law, eta, time, bound", [
-    # measured with 20 rows, mean over largest: 0.75, 0.56, 0.15, 1.2 %; with 40 a third
-    ("power 1 0.5 viscosity/limits 0 100", lambda r: min(max(r, 1e-12)**-0.5, 100), 1.5, 0.01),
-    ("power 1 2", lambda r: r, 3, 0.01),
+    # measured with 20 rows, mean over largest: 0.18, 0.37, 0.28, 0.48 %; with 40 a third. Without deconvolution 0.75, 0.56, 0.15, 1.2 %
+    ("power 1 0.5 viscosity/limits 0 100", lambda r: min(max(r, 1e-12)**-0.5, 100), 1.5, 0.005),
+    ("power 1 2", lambda r: r, 3, 0.005),
     ("herschel/bulkley 0.1 1 1 100", papanastasiou(0.1, 100), 1.5, 0.005),
-    ("herschel/bulkley 0.25 1 1 100", papanastasiou(0.25, 100), 1.5, 0.015),
+    ("herschel/bulkley 0.25 1 1 100", papanastasiou(0.25, 100), 1.5, 0.0075),
 ])
 def test_channel(tmp_path, law, eta, time, bound):
     """From rest to the steady flow of the regularized law."""
@@ -173,7 +173,7 @@ def test_channel(tmp_path, law, eta, time, bound):
 
 
 def test_order(tmp_path):
-    """The error of a yield stress falls with the spacing: 20 to 40 rows, measured 1.16 to 0.42 %."""
+    """The error of a yield stress falls with the spacing: 20 to 40 rows, measured 0.48 to 0.15 %."""
     errors = []
     for rows in (20, 40):
         folder = tmp_path / str(rows)
