@@ -34,7 +34,7 @@ def given(scene, *levels):
 
 def new_ids(scene):
     """Are IDs given at run time?"""
-    return scene.open or bool(scene.has["refine"]) or given(scene, "reset_atoms", "delete_atoms")
+    return scene.open or bool(scene.has["refine"]) or given(scene, "reset_atoms", "delete_atoms", "create_atoms")
 
 
 @functools.lru_cache(maxsize=1)
@@ -151,7 +151,7 @@ def no_levels(scene):
 
 def ordered(scene):
     """LAMMPS gives new IDs by rank or by place, and those decide what levels do."""
-    return no_levels(scene) or not given(scene, "reset_atoms", "delete_atoms")
+    return no_levels(scene) or not given(scene, "reset_atoms", "delete_atoms", "create_atoms")
 
 
 def numbering(r):
@@ -176,7 +176,7 @@ def restart(r):
 def alone(scene):
     """Nothing outside acts. Shifting with a background, hourglass forces of pair_style fsi/solid, which turn with particles, a hole and a new density
     change momentum; with implicit viscosity fluids lack a reaction of solids that accelerate in sub-steps (theory.rst)."""
-    return not (scene.walled or scene.plane or scene.open or scene.has["gravity"] or scene.setting("stream") or given(scene, "clamped", "fsi/set", "background", "hypo updated")
+    return not (scene.walled or scene.plane or scene.open or scene.has["gravity"] or scene.setting("stream") or given(scene, "clamped", "fsi/set", "background", "hypo updated", "velocity", "addforce", "setforce", "spring", "viscous", "momentum")
                 or scene.setting("spot") or given(scene, "yield stress") and given(scene, "sub-steps", "adaptive sub-steps"))
 
 
@@ -189,7 +189,7 @@ def momentum(r):
 
 def drifts(scene):
     """Nothing outside stands still, and no step depends on speeds."""
-    return not (scene.walled or scene.plane or scene.open or scene.setting("stream") or given(scene, "clamped", "adaptive step", "adaptive sub-steps", "region", "moving region", "unsettled"))
+    return not (scene.walled or scene.plane or scene.open or scene.setting("stream") or given(scene, "clamped", "adaptive step", "adaptive sub-steps", "region", "moving region", "unsettled", "create_atoms", "spring", "viscous", "momentum"))
 
 
 def galilei(r):
@@ -222,7 +222,7 @@ def test_pairs(seed, k, invariant):
 
 
 # What the balance of energy does not contain, says its page; what takes other steps as dt falls, or is not smooth in time
-ROUGH = {"article", "summation", "ratio", "shift", "shift every 3", "surface rule", "damage", "hypo updated", "quadratic updated", "delete_atoms", "delete, no compress", "fsi/set", "redefined", "timestep", "adaptive step", "adaptive sub-steps",
+ROUGH = {"article", "summation", "ratio", "shift", "shift every 3", "surface rule", "damage", "hypo updated", "quadratic updated", "delete_atoms", "delete, no compress", "fsi/set", "redefined", "given again", "timestep", *factors.all_of("command", "reset_timestep", "change_box", "neighbor"), *factors.all_of("other fix"), "adaptive step", "adaptive sub-steps",
          *factors.all_of("levels"), *factors.all_of("ends", "stream")}
 
 
