@@ -360,7 +360,10 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
     def between(self):
         again = "\n".join([self.fsi, *self.walls()])
         wider = [f"{axis} delta -0.01 0.01" for axis, periodic in zip("xyz", self.periodic) if not periodic]
-        text = f"{self.has['between']}\n{self.has['stays']}".replace("{again}", again).replace("{all again}", "\n".join(self.fixes()))
+        text = f"{self.has['between']}\n{self.has['stays']}"
+        if self.watched and "reset_timestep" in text:    # LAMMPS refuses it with fix ave/atom
+            text = f"unfix w_mean\n{text}\nfix w_mean all ave/atom 1 2 2 c_w_atom[1] c_w_surface"
+        text = text.replace("{again}", again).replace("{all again}", "\n".join(self.fixes()))
         return text.replace("{lattice}", "sq" if self.dim == 2 else "sc").replace("{z}", "0" if self.dim == 2 else "0.5").replace("{wider}", f"change_box all {' '.join(wider)}" if wider else "")
 
     def text(self, folder):
@@ -384,7 +387,7 @@ write_restart {folder}/mid.restart
 {self.end(folder)}""", self.sign)
 
     def steps(self, n):
-        return f"run {n // 2}\nrun {n - n // 2}" if self.cut else f"run {n}"
+        return f"run {11 * n // 16}\nrun {n - 11 * n // 16}" if self.cut else f"run {n}"
 
     def outputs(self):
         """Commands that look at the scene from all sides"""
