@@ -116,9 +116,9 @@ void Settling::run(int sweeps)
   points.resize(POINT * nall);
   for (int j = 0; j < nall; j++) {
     const bool counts = step.walls.is_before_planes(atom->x[j]);
-    // densities of wall particles are made anew when a run begins
+    // densities of walls, and of solids by sums, are made anew when a run begins
     const State &s = disc.state[atom->type[j]];
-    const double rho = s.species == RIGID ? s.rho0 : atom->rho[j];
+    const double rho = s.species == RIGID || s.species == SOLID ? s.rho0 : atom->rho[j];
     points[POINT * j + 3] = counts ? atom->rmass[j] / rho : 0.0;
   }
   mirrors.assign(1, Mirror(step.walls, {}));
