@@ -221,6 +221,27 @@ def test_pairs(seed, k, invariant):
     INVARIANTS[invariant][1](r)
 
 
+# What acts from outside, or changes momentum as alone() says: with it hardly a scene of all pairs would be asked
+OUTSIDE = {*factors.all_of("walls"), *factors.all_of("ends"), *factors.all_of("gravity"), *factors.all_of("symmetry"), *factors.all_of("other fix"), "velocity", "create_atoms", "clamped", "fsi/set", "background",
+           "hypo updated", "delete_atoms", "delete, no compress"}
+
+
+@functools.lru_cache(maxsize=1)
+def quiet_rows(seed):
+    return [row for row in factors.rows(seed, OUTSIDE) if alone(PairScene(row))]
+
+
+@pytest.mark.parametrize("k", range(30))
+def test_alone(request, k):
+    """Momentum stays, and a velocity of all changes nothing, in scenes that nothing acts on."""
+    of_seed = quiet_rows(request.config.getoption("--pairs-seed"))
+    r = Runs(k, of_seed[k * len(of_seed) // 30])
+    print(" | ".join(level for level in r.scene.row if level != FIRST[FACTOR_OF[level]]))
+    momentum(r)
+    if drifts(r.scene):
+        galilei(r)
+
+
 # What the balance of energy does not contain, says its page; what takes other steps as dt falls, or is not smooth in time
 ROUGH = {"article", "summation", "ratio", "shift", "shift every 3", "surface rule", "damage", "hypo updated", "quadratic updated", "delete_atoms", "delete, no compress", "fsi/set", "redefined", "given again", "timestep", *factors.all_of("command", "reset_timestep", "change_box", "neighbor"), *factors.all_of("other fix"), "adaptive step", "adaptive sub-steps",
          *factors.all_of("levels"), *factors.all_of("ends", "stream")}
