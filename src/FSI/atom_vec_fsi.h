@@ -25,6 +25,7 @@ AtomStyle(fsi,AtomVecFSI);
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -53,6 +54,7 @@ class AtomVecFSI : virtual public AtomVec {
   // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds
   // of solids are still of its spacing and kernel
   std::unique_ptr<FSI::Record> of_fix_fsi;
+  std::vector<double> of_atoms;    // what it had of each, as restart files do; after that its ID
 
  private:
   double *rmass, *rho;

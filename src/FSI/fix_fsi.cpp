@@ -118,8 +118,9 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   disc.resolve();
   choose_skin(lmp, disc.dx);
-  const auto &before = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  if (before && changes.any_mass()) goes_on(*before, "in the last run");
+  const auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  const bool again = atoms->of_fix_fsi && changes.any_mass(),
+             same = again && goes_on(*atoms->of_fix_fsi, "in the last run");
   if (std::count(disc.thin.begin(), disc.thin.end(), 1.0))
     disc.sight = std::make_shared<Sight>(lmp, disc, step.walls, disc.thin);
 
@@ -127,14 +128,19 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   pre_exchange_migrate = 1;
   set_fields();
   register_fields();
+  if (!again) return;
+  read_fields(*atoms->of_fix_fsi, same);
+  fields.unpack_all(atoms->of_atoms);
 }
 // clang-format on
 
 // what the next one has to keep, if particles have masses since
 FixFSI::~FixFSI()
 {
-  auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  if (!parts.empty()) kept = std::make_unique<Record>(record());
+  if (parts.empty()) return;
+  auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  atoms->of_fix_fsi = std::make_unique<Record>(record());
+  atoms->of_atoms = fields.pack_all();
 }
 
 Record FixFSI::record() const
@@ -144,6 +150,8 @@ Record FixFSI::record() const
   check.write(record);
   step.write(record);
   population.write(record);
+  members->surface_deficit.write(record);
+  fields.write(record);
   return record;
 }
 
@@ -413,8 +421,6 @@ void FixFSI::write_restart(FILE *fp)
   Record record = this->record();
   clock.write(record);
   if (ledger.kept) record.add("ledger", std::vector<double>(all, all + Ledger::NTERM));
-  members->surface_deficit.write(record);
-  fields.write(record);
   record.write(fp);
 }
 
@@ -435,12 +441,17 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
   return !other_kernel;
 }
 
+void FixFSI::read_fields(const Record &record, bool same_kernel)
+{
+  const std::vector<std::string> of_kernel = {"reference of ratio"};
+  fields.read(record, same_kernel ? decltype(of_kernel)() : of_kernel);
+  members->surface_deficit.read(record);
+}
+
 void FixFSI::restart(char *buf)
 {
   const Record record(lmp, "fix fsi", buf);
-  const std::vector<std::string> of_kernel = {"reference of ratio"};
-  fields.read(record, goes_on(record, Keywords::OF_RESTART) ? decltype(of_kernel)() : of_kernel);
-  members->surface_deficit.read(record);
+  read_fields(record, goes_on(record, Keywords::OF_RESTART));
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");

@@ -99,6 +99,7 @@ class FixFSI : public FSI::FixFields {
   void find_parts();
   FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);
+  void read_fields(const FSI::Record &, bool same_kernel);
 
   // ghosts get density, number density where in use, what parts of the step add; back come the
   // sums that pairs left on them

@@ -49,6 +49,7 @@ class PairScene:
     watched: bool = False    # every output of the package, in every step
     cut: bool = False        # each run in two
     balanced: bool = False    # ranks of tiles that move
+    idle: bool = False    # commands between runs that change nothing
 
     @cached_property
     def has(self):
@@ -359,12 +360,24 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
 
     def between(self):
         again = "\n".join([self.fsi, *self.walls()])
-        wider = [f"{axis} delta -0.01 0.01" for axis, periodic in zip("xyz", self.periodic) if not periodic]
         text = f"{self.has['between']}\n{self.has['stays']}"
         if self.watched and "reset_timestep" in text:    # LAMMPS refuses it with fix ave/atom
             text = f"unfix w_mean\n{text}\nfix w_mean all ave/atom 1 2 2 c_w_atom[1] c_w_surface"
         text = text.replace("{again}", again).replace("{all again}", "\n".join(self.fixes()))
-        return text.replace("{lattice}", "sq" if self.dim == 2 else "sc").replace("{z}", "0" if self.dim == 2 else "0.5").replace("{wider}", f"change_box all {' '.join(wider)}" if wider else "")
+        return text.replace("{lattice}", "sq" if self.dim == 2 else "sc").replace("{z}", "0" if self.dim == 2 else "0.5").replace("{wider}", self.wider()) + (self.idling() if self.idle else "")
+
+    def wider(self):
+        axes = [f"{axis} delta -0.01 0.01" for axis, periodic in zip("xyz", self.periodic) if not periodic]
+        return f"change_box all {' '.join(axes)}" if axes else ""
+
+    def idling(self):
+        """After the first run: step numbers of the same phase, what is there given again, nothing added. Not: what is refused, a box that absorbers measure,
+        walls that have moved since, and walls of particles with an acceleration that a new fix does not know."""
+        given = lambda *levels: any(level in self.row for level in levels)    # noqa: E731
+        steps = "" if given("moving particles", "driven particles", "adaptive step", "adaptive sub-steps") else "reset_timestep $(step+60) time $(time:%.17g)"
+        walls = [] if given("moving mirror", "moving particles", "driven particles", "floating", "two floats") else self.walls()
+        return "\n".join(["", steps, "" if self.open else self.wider(), "velocity all set 0 0 0 sum yes units box", "displace_atoms all move 0 0 0 units box", "balance 1.1 shift xy 5 1.05",
+                          self.coeff, self.fsi, *walls, "region nowhere block -9 -8 -9 -8 INF INF units box", "delete_atoms region nowhere compress no", "run 0"])
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)

@@ -144,6 +144,11 @@ def cut(r):
     same(r.scene, r.base, r.other(cut=True), SKIN)
 
 
+def idle(r):
+    """What is given again, or added to by nothing, is as it was."""
+    same(r.scene, r.base, r.other(idle=True), SKIN)
+
+
 def no_levels(scene):
     """What splits and merges where there is a choice is decided by IDs."""
     return not scene.has["refine"]
@@ -201,7 +206,7 @@ def galilei(r):
     same(r.scene, r.base, other, ROUND)
 
 
-INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut),
+INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut), "idle": (ordered, idle),
               "numbering": (no_levels, numbering), "mirror": (ordered, mirror), "restart": (always, restart), "momentum": (alone, momentum), "frame": (drifts, galilei)}
 SAMPLE = {"four ranks": 8, "balanced": 3}    # asked of one scene in so many
 
