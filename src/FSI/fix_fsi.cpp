@@ -118,7 +118,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   disc.resolve();
   choose_skin(lmp, disc.dx);
-  const auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
   const bool again = atoms->of_fix_fsi && changes.any_mass(),
              same = again && goes_on(*atoms->of_fix_fsi, "in the last run");
   if (std::count(disc.thin.begin(), disc.thin.end(), 1.0))
@@ -130,7 +130,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   register_fields();
   if (!again) return;
   read_fields(*atoms->of_fix_fsi, same);
-  fields.unpack_all(atoms->of_atoms);
+  fields.unpack_all(atoms->of_fixes[""]);
 }
 // clang-format on
 
@@ -140,7 +140,7 @@ FixFSI::~FixFSI()
   if (parts.empty()) return;
   auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
   atoms->of_fix_fsi = std::make_unique<Record>(record());
-  atoms->of_atoms = fields.pack_all();
+  atoms->of_fixes[""] = fields.pack_all();
 }
 
 Record FixFSI::record() const

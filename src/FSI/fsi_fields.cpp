@@ -241,11 +241,14 @@ void Fields::take(int i, const double *values)
 
 std::vector<double> Fields::pack_all() const
 {
-  const size_t row = restart_size() + 1;
-  std::vector<double> rows(any(RESTART) ? row * atom->nlocal : 0);
-  for (int i = 0; i < atom->nlocal && !rows.empty(); i++) {
-    pack_restart(i, &rows[row * i]);
-    rows[row * i + row - 1] = (double) atom->tag[i];
+  std::vector<double> rows, row(restart_size() + 1);
+  for (int i = 0; i < atom->nlocal && any(RESTART); i++) {
+    pack_restart(i, row.data());
+    row.back() = (double) atom->tag[i];
+    if (std::any_of(row.begin() + 1, row.end() - 1, [](double x) {
+          return x != 0.0;
+        }))
+      rows.insert(rows.end(), row.begin(), row.end());
   }
   return rows;
 }

@@ -64,7 +64,8 @@ namespace FSI {
     int restart_size() const;
     int pack_restart(int i, double *buf) const;
     void unpack_restart(int i, int nth);
-    // the same from one fix to the next in its place: rows of all atoms, each with its ID behind it
+    // the same from one fix to the next in its place: rows, each with the atom's ID behind it, of
+    // all atoms that have other numbers than 0
     std::vector<double> pack_all() const;
     void unpack_all(const std::vector<double> &);
 

@@ -372,10 +372,10 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
 
     def idling(self):
         """After the first run: step numbers of the same phase, what is there given again, nothing added. Not: what is refused, a box that absorbers measure,
-        walls that have moved since, and walls of particles with an acceleration that a new fix does not know."""
+        walls that have moved since."""
         given = lambda *levels: any(level in self.row for level in levels)    # noqa: E731
         steps = "" if given("moving particles", "driven particles", "adaptive step", "adaptive sub-steps") else "reset_timestep $(step+60) time $(time:%.17g)"
-        walls = [] if given("moving mirror", "moving particles", "driven particles", "floating", "two floats") else self.walls()
+        walls = [] if given("moving mirror", "moving particles", "driven particles") else self.walls()
         return "\n".join(["", steps, "" if self.open else self.wider(), "velocity all set 0 0 0 sum yes units box", "displace_atoms all move 0 0 0 units box", "balance 1.1 shift xy 5 1.05",
                           self.coeff, self.fsi, *walls, "region nowhere block -9 -8 -9 -8 INF INF units box", "delete_atoms region nowhere compress no", "run 0"])
 
