@@ -376,6 +376,7 @@ void FixFSI::update_state(bool advance)
 {
   fields.grow();
   changes.in_step();
+  if (neighbor->ago == 0) population.check_births();
   step.inverted = -1;
   ledger.set_tally(advance ? update->dt : 0.0);
   step.body_forces.evaluate(disc.state);
@@ -404,6 +405,7 @@ void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
+  if (update->whichflag == 1) population.born(atom->tag[i]);
   if (!parts.empty()) members->others.give_defaults(i);    // not before the first run
   if (update->whichflag == 1 && disc.state[atom->type[i]].species == FLUID && !is_moved(i, lmp))
     error->one(FLERR,

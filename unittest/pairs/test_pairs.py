@@ -53,6 +53,15 @@ class Runs:
     def base(self):
         return go(self.scene, self.folder / "base")
 
+    @functools.cached_property
+    def counted(self):
+        """The same with lists at the end: ends make and count particles when lists are built"""
+        return self.other(counted=True) if self.scene.open else self.base
+
+    def alike(self, **changes):
+        """The same but for this, with lists at the end in both"""
+        same(self.scene, self.counted, self.other(**changes, counted=self.scene.open), SKIN)
+
     def other(self, **changes):
         return go(replace(self.scene, **changes), self.folder / "_".join(changes))
 
@@ -111,8 +120,7 @@ def keeps_mass(scene):
 
 def mass(r):
     """What was there, came in, went out, was deleted"""
-    # an end counts who has passed its plane when the next list is built
-    before, s = r.scene.particles["mass"], r.other(counted=True) if r.scene.open else r.base
+    before, s = r.scene.particles["mass"], r.counted
     here = (np.abs(s.x[:, 0]) < HALF * DX) | (not r.scene.open) | (s.type == FLOOR)    # not in the buffer of an end
     balance = [*s.mass[here], *-before, s.extra["deleted"], -s.extra.get("in mass", 0.0), -s.extra.get("out mass", 0.0)]
     assert abs(math.fsum(balance)) < 1e-14 * math.fsum(before) * (100 if r.scene.open else 1)    # the ends count in sums of their own
@@ -131,22 +139,22 @@ def balanced(r):
 
 
 def skin(r):
-    same(r.scene, r.base, r.other(skin=1.0), SKIN)
+    r.alike(skin=1.0)
 
 
 def watched(r):
     """Who looks changes nothing."""
-    same(r.scene, r.base, r.other(watched=True), SKIN)
+    r.alike(watched=True)
 
 
 def cut(r):
     """A run in two parts is the run at once. (Delete_atoms numbers by order, which is made anew.)"""
-    same(r.scene, r.base, r.other(cut=True), SKIN)
+    r.alike(cut=True)
 
 
 def idle(r):
     """What is given again, or added to by nothing, is as it was."""
-    same(r.scene, r.base, r.other(idle=True), SKIN)
+    r.alike(idle=True)
 
 
 def no_levels(scene):
@@ -285,6 +293,12 @@ FOUND = {  # faults that pairs have shown, each in the scene that has these leve
     "rigid-body-bonded-to-its-image": (["neo-hookean", "rigid", "sub-steps", "symmetry plane"], "watched"),
     "end-that-leaves-a-rank": (["3D", "thin particles", "damage", "moving region", "absorbing ends"], "balanced"),
     "bodies-behind-walls-in-fluids-of-varying-viscosity": (["3D", "yield stress", "moving mirror", "neo-hookean", "clamp on a float"], "numbering"),
+    "densities-of-walls-when-levels-settle": (["region", "floating", "shift every 3", "unequal masses", "reset_timestep"], "cut"),
+    "densities-of-solids-when-levels-settle": (["paper", "moving region", "ratio"], "cut"),
+    "surfaces-of-a-fix-that-is-given-again": (["surface rule"], "idle"),
+    "ratios-of-a-fix-that-is-given-again": (["paper", "ratio"], "idle"),
+    "shifting-between-ends-of-a-fix-that-is-given-again": (["background", "shift every 3", "absorbing ends"], "idle"),
+    "acceleration-of-a-wall-that-is-given-again": (["floating"], "idle"),
     "thickness-of-thin-bodies": (["3D", "quintic", "no walls", "thin", "rigid", "gravity"], "skin"),
 }
 
