@@ -245,9 +245,7 @@ std::vector<double> Fields::pack_all() const
   for (int i = 0; i < atom->nlocal && any(RESTART); i++) {
     pack_restart(i, row.data());
     row.back() = (double) atom->tag[i];
-    if (std::any_of(row.begin() + 1, row.end() - 1, [](double x) {
-          return x != 0.0;
-        }))
+    if (std::count(row.begin() + 1, row.end() - 1, 0.0) < (int) row.size() - 2)
       rows.insert(rows.end(), row.begin(), row.end());
   }
   return rows;

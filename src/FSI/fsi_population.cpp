@@ -128,9 +128,7 @@ void Population::make(const std::vector<Particle> &all, const std::string &label
     atom->rmass[i] = p.rmass;
     std::copy_n(p.v, 3, atom->v[i]);
   }
-  const size_t of_others = births.size();
   atom->data_fix_compute_variable(first, atom->nlocal);
-  births.resize(of_others);
   for (int i = first; account && i < atom->nlocal; i++) *account -= energy(i);
   made += atom->nlocal - first;
 }
@@ -170,16 +168,16 @@ std::vector<char> Population::in_use(const std::vector<tagint> &list) const
 // fix deposit and fix pour with id next count on from what there was when they were defined
 void Population::check_births()
 {
-  if (!anywhere(!births.empty(), world)) return;
-  const auto ids = gather(std::set<tagint>(births.begin(), births.end()), world);
+  const auto ids = gather(births, world);
   births.clear();
+  if (ids.empty()) return;
   const auto found = find_particles(atom, world, [&](int i) {
     return ids.count(atom->tag[i]) > 0;
   });
   if (found.count > (bigint) ids.size())
     error->all(FLERR,
-               "A fix made atoms with IDs that others have, as {}: where fixes of the package make "
-               "particles, too, give fix deposit and fix pour the keyword id max",
+               "A fix made atoms with IDs that others have, as {}: fix deposit and fix pour need id "
+               "max where fixes of the package make particles, too",
                *ids.begin());
 }
 

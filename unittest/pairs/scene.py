@@ -212,7 +212,7 @@ class PairScene:
         mass = rho0 / np.array([psi[s] for s in size[:, 0]])
         mass[kind == GRAIN] = 2000 * np.pi * 0.002**2 * (1 if self.dim == 2 else 4 / 3 * 0.002)    # discs and spheres
         uneven = np.random.default_rng(2).uniform(-1, 1, (len(x), 4)) * self.setting("uneven", 0)
-        mass *= 1 + np.where(solids | fluids, uneven[:, 0], 0)
+        mass *= 1 + np.where(solids | fluids, 0.5 * uneven[:, 0], 0)    # more is too much noise for densities by sums
         x = x + np.where(fluids[:, None], uneven[:, 1:] * DX, 0) * flat
         rho = np.where(fluids, rho0 * (1 + random.uniform(-1e-3, 1e-3, len(x))), rho0)
         return {"x": x, "v": v * flat, "type": kind, "mol": mol, "rho": rho, "mass": mass}

@@ -209,7 +209,7 @@ def test_wall_particles_join_a_motion_that_sums_over_ranks(tmp_path, ranks):
 @pytest.mark.parametrize("ids", ("max", "next"))
 def test_atoms_that_another_fix_makes_beside_ends(tmp_path, ids, ranks):
     """Id next counts on from the largest ID that there was when the fix was defined: copies of the ends have those."""
-    text = deck("open") + f"region up block 0.05 0.15 0.12 0.2 -0.001 0.001 units box\nfix rain water deposit 4 3 20 8765 region up near 0.02 units box id {ids}\n"
+    text = deck("open") + f"region up block 0.05 0.15 0.12 0.2 -0.001 0.001 units box\nfix rain water deposit 4 1 20 8765 region up near 0.02 units box id {ids}\n"
     done = lammps(tmp_path, text + "run 100\n" + dump("end"), ranks, m_fsi=MATERIALS)
     if answered(done, "ERROR: A fix made atoms with IDs that others have, as .* id max" if ids == "next" else ""):
         return
