@@ -129,7 +129,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   set_fields();
   register_fields();
   if (!again) return;
-  read_fields(*atoms->of_fix_fsi, same);
+  go_on(*atoms->of_fix_fsi, same, true);
   fields.unpack_all(atoms->of_fixes[""]);
 }
 // clang-format on
@@ -140,6 +140,9 @@ FixFSI::~FixFSI()
   if (parts.empty()) return;
   auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
   atoms->of_fix_fsi = std::make_unique<Record>(record());
+  const double *const account = ledger.energy_out;
+  if (ledger.kept)
+    atoms->of_fix_fsi->add("ledger", std::vector<double>(account, account + Ledger::NTERM));
   atoms->of_fixes[""] = fields.pack_all();
 }
 
@@ -443,20 +446,19 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
   return !other_kernel;
 }
 
-void FixFSI::read_fields(const Record &record, bool same_kernel)
+void FixFSI::go_on(const Record &record, bool same_kernel, bool has_ledger)
 {
   const std::vector<std::string> of_kernel = {"reference of ratio"};
   fields.read(record, same_kernel ? decltype(of_kernel)() : of_kernel);
   members->surface_deficit.read(record);
+  if (!has_ledger || !record.has("ledger")) return;
+  const auto terms = record.numbers("ledger");
+  std::copy_n(terms.begin(), std::min(terms.size(), (size_t) Ledger::NTERM), ledger.energy_out);
 }
 
 void FixFSI::restart(char *buf)
 {
   const Record record(lmp, "fix fsi", buf);
-  read_fields(record, goes_on(record, Keywords::OF_RESTART));
+  go_on(record, goes_on(record, Keywords::OF_RESTART), comm->me == 0);
   clock.read(record);
-  if (record.has("ledger") && comm->me == 0) {
-    const auto terms = record.numbers("ledger");
-    std::copy_n(terms.begin(), std::min(terms.size(), (size_t) Ledger::NTERM), ledger.energy_out);
-  }
 }

@@ -99,7 +99,7 @@ class FixFSI : public FSI::FixFields {
   void find_parts();
   FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);
-  void read_fields(const FSI::Record &, bool same_kernel);
+  void go_on(const FSI::Record &, bool same_kernel, bool has_ledger);
 
   // ghosts get density, number density where in use, what parts of the step add; back come the
   // sums that pairs left on them

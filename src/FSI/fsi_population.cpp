@@ -176,8 +176,8 @@ void Population::check_births()
   });
   if (found.count > (bigint) ids.size())
     error->all(FLERR,
-               "A fix made atoms with IDs that others have, as {}: fix deposit and fix pour need id "
-               "max where fixes of the package make particles, too",
+               "A fix made atoms with IDs that others have, as {}: fix deposit and fix pour need "
+               "id max where fixes of the package make particles, too",
                *ids.begin());
 }
 

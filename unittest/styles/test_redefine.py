@@ -90,6 +90,15 @@ def test_the_same_again(tmp_path, whole, scene, name, way):
     assert differences(whole(scene), frame(done)) == {}
 
 
+@pytest.mark.parametrize("scene, ranks", [("updated", 1), ("updated", 2), ("levels", 1)])
+def test_energies_of_fix_fsi_again(tmp_path, scene, ranks):
+    """The sum of energies does not jump: what friction and ends have taken is kept."""
+    say = 'run 0\nprint "sum $(c_energy:%.17g)"\n'
+    done = run(tmp_path, deck(scene) + f"thermo_style custom step c_energy\nrun {STEPS}\n{say}{part(scene, 'fsi')}{say}", ranks, m_fsi=MATERIALS)
+    before, after = map(float, re.findall(r"^sum (\S+)$", done.output, re.M))
+    assert abs(after - before) < 1e-12 * before
+
+
 # ---- another one ---------------------------------------------------------------------------------
 
 CASES = [(scene, name, text, refused, way) for (scene, name), others in OTHER.items() for text, refused in others.items() if name != "refine"    # splits in run 0: fuzz_runs.py has it
