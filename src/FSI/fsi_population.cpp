@@ -165,22 +165,6 @@ std::vector<char> Population::in_use(const std::vector<tagint> &list) const
   return all;
 }
 
-// fix deposit and fix pour with id next count on from what there was when they were defined
-void Population::check_births()
-{
-  const auto ids = gather(births, world);
-  births.clear();
-  if (ids.empty()) return;
-  const auto found = find_particles(atom, world, [&](int i) {
-    return ids.count(atom->tag[i]) > 0;
-  });
-  if (found.count > (bigint) ids.size())
-    error->all(FLERR,
-               "A fix made atoms with IDs that others have, as {}: fix deposit and fix pour need "
-               "id max where fixes of the package make particles, too",
-               *ids.begin());
-}
-
 int Population::copy(int i, tagint id)
 {
   double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};    // arrays may grow meanwhile

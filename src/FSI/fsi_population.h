@@ -20,7 +20,6 @@
 
 #include "pointers.h"
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -58,9 +57,6 @@ namespace FSI {
     void
     release(const std::vector<tagint> &of_rank);    // IDs of particles removed here: for others
     void end();
-    // an atom that a fix makes in a run; and when lists are new: are their IDs those of others?
-    void born(tagint id) { births.insert(id); }
-    void check_births();
 
     void write(Record &) const;
     void read(const Record &);
@@ -72,7 +68,6 @@ namespace FSI {
     std::vector<tagint> free_ids;    // below that, released; in rising order
     bigint made, removed, wanted;    // since begin(): of this rank; of all
     std::string maker;
-    std::set<tagint> births;
     void renew_map();
     std::vector<tagint> new_ids(tagint n, const std::string &label);
     std::vector<char> in_use(const std::vector<tagint> &) const;
