@@ -25,6 +25,7 @@ AtomStyle(fsi,AtomVecFSI);
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -53,6 +54,8 @@ class AtomVecFSI : virtual public AtomVec {
   // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds
   // of solids are still of its spacing and kernel
   std::unique_ptr<FSI::Record> of_fix_fsi;
+  // what it, and walls of particles by their ID, had of each particle (Fields::pack_all)
+  std::map<std::string, std::vector<double>> of_fixes;
 
  private:
   double *rmass, *rho;

@@ -118,8 +118,6 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   disc.resolve();
   choose_skin(lmp, disc.dx);
-  const auto &before = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  if (before && changes.any_mass()) goes_on(*before, "in the last run");
   if (std::count(disc.thin.begin(), disc.thin.end(), 1.0))
     disc.sight = std::make_shared<Sight>(lmp, disc, step.walls, disc.thin);
 
@@ -127,23 +125,32 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   pre_exchange_migrate = 1;
   set_fields();
   register_fields();
+  auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  if (!atoms->of_fix_fsi || !changes.any_mass()) return;
+  goes_on(*atoms->of_fix_fsi, "in the last run");
+  fields.unpack_all(atoms->of_fixes[""]);
 }
 // clang-format on
 
 // what the next one has to keep, if particles have masses since
 FixFSI::~FixFSI()
 {
-  auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  if (!parts.empty()) kept = std::make_unique<Record>(record());
+  if (parts.empty()) return;
+  auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  atoms->of_fix_fsi = std::make_unique<Record>(record(ledger.energy_out));
+  atoms->of_fixes[""] = fields.pack_all();
 }
 
-Record FixFSI::record() const
+Record FixFSI::record(const double *account) const
 {
   Record record(lmp, "fix fsi");
   members->keywords.write(record);
   check.write(record);
   step.write(record);
   population.write(record);
+  members->surface_deficit.write(record);
+  fields.write(record);
+  if (ledger.kept) record.add("ledger", std::vector<double>(account, account + Ledger::NTERM));
   return record;
 }
 
@@ -395,7 +402,7 @@ void FixFSI::update_state(bool advance)
 void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
-  changes.forget();
+  changes.made(i);
   if (!parts.empty()) members->others.give_defaults(i);    // not before the first run
   if (update->whichflag == 1 && disc.state[atom->type[i]].species == FLUID && !is_moved(i, lmp))
     error->one(FLERR,
@@ -404,22 +411,16 @@ void FixFSI::set_arrays(int i)
                atom->tag[i], group->names[igroup], id);
 }
 
-// Restart files: the command, the clock, what the ledger's terms have taken; per atom the
-// reference of density mode ratio.
 void FixFSI::write_restart(FILE *fp)
 {
   double all[Ledger::NTERM];
   MPI_Allreduce(ledger.energy_out, all, Ledger::NTERM, MPI_DOUBLE, MPI_SUM, world);
-  Record record = this->record();
+  Record record = this->record(all);
   clock.write(record);
-  if (ledger.kept) record.add("ledger", std::vector<double>(all, all + Ledger::NTERM));
-  members->surface_deficit.write(record);
-  fields.write(record);
   record.write(fp);
 }
 
-// with the kernel of the particles' masses
-bool FixFSI::goes_on(const Record &record, const std::string &when)
+void FixFSI::goes_on(const Record &record, const std::string &when)
 {
   members->keywords.compare(record, when);
   check.read(record);
@@ -427,23 +428,22 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
   population.read(record);
   const bool other_kernel = members->keywords.differs(record, "kernel") ||
       members->keywords.differs(record, "smoothing length over spacing");
-  const bool sums = disc.density_fluid == disc.SUMMATION || disc.density_solid == disc.SUMMATION;
-  if (other_kernel && sums)
+  if (other_kernel &&
+      (disc.density_fluid == disc.SUMMATION || disc.density_solid == disc.SUMMATION))
     error->all(FLERR,
                "Fix fsi: density mode summation must keep kernel and smoothing length, for "
                "which the masses of its particles were made");
-  return !other_kernel;
+  fields.read(record, {other_kernel ? "reference of ratio" : ""});
+  members->surface_deficit.read(record);
+  if (!record.has("ledger")) return;
+  const auto terms = record.numbers("ledger");
+  std::copy_n(terms.begin(), std::min(terms.size(), (size_t) Ledger::NTERM), ledger.energy_out);
 }
 
 void FixFSI::restart(char *buf)
 {
   const Record record(lmp, "fix fsi", buf);
-  const std::vector<std::string> of_kernel = {"reference of ratio"};
-  fields.read(record, goes_on(record, Keywords::OF_RESTART) ? decltype(of_kernel)() : of_kernel);
-  members->surface_deficit.read(record);
+  goes_on(record, Keywords::OF_RESTART);
+  if (comm->me) std::fill_n(ledger.energy_out, Ledger::NTERM, 0.0);    // they are sums of all
   clock.read(record);
-  if (record.has("ledger") && comm->me == 0) {
-    const auto terms = record.numbers("ledger");
-    std::copy_n(terms.begin(), std::min(terms.size(), (size_t) Ledger::NTERM), ledger.energy_out);
-  }
 }

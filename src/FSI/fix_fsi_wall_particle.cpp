@@ -14,6 +14,7 @@
 #include "fix_fsi_wall_particle.h"
 
 #include "atom.h"
+#include "atom_vec_fsi.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
@@ -61,9 +62,17 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   fields.set("velocity of the last step", Fields::RESTART, true, before, 4);
   register_fields();
+  Record record(lmp, "fix fsi/wall/particle");
+  fields.write(record);
+  fields.read(record);
+  fields.unpack_all(dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fixes[id]);
 }
 
-FixFSIWallParticle::~FixFSIWallParticle() = default;
+// another one of this ID goes on with it
+FixFSIWallParticle::~FixFSIWallParticle()
+{
+  dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fixes[id] = fields.pack_all();
+}
 
 void FixFSIWallParticle::init()
 {

@@ -25,6 +25,7 @@
 #include "fsi_part.h"
 #include "fsi_refusals.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "pair.h"
 #include "update.h"
 
@@ -43,8 +44,31 @@ uint64_t Changes::fingerprint() const
   return hash;
 }
 
+// fix deposit and fix pour with id next count on from what there was when they were defined
+void Changes::check_births()
+{
+  const auto ids = gather(births, world);
+  births.clear();
+  if (ids.empty()) return;
+  const auto found = find_particles(atom, world, [&](int i) {
+    return ids.count(atom->tag[i]) > 0;
+  });
+  if (found.count > (bigint) ids.size())
+    error->all(FLERR,
+               "A fix made atoms with IDs that others have, as {}: fix deposit and fix pour need "
+               "id max where fixes of the package make particles, too",
+               *ids.begin());
+}
+
+void Changes::made(int i)
+{
+  forget();
+  if (update->whichflag == 1) births.insert(atom->tag[i]);
+}
+
 void Changes::in_step()
 {
+  if (neighbor->ago == 0) check_births();
   nlocal = atom->nlocal;
   stale = false;
 }

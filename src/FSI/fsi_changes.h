@@ -20,6 +20,7 @@
 #include "pointers.h"
 
 #include <cstdint>
+#include <set>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -32,6 +33,7 @@ namespace FSI {
     // particles of this rank
     void begin_run() { stale = true; }    // in init(): nothing is known of them
     void forget() { stale = true; }       // one was made, or what others know of it is gone
+    void made(int i);                     // in set_arrays()
     void in_step();                       // the state is brought up to date
     void end_run() { known = fingerprint(); }
     bool of_atoms() const;    // since then
@@ -48,6 +50,8 @@ namespace FSI {
     int nlocal;
     uint64_t known;
     bool stale;
+    std::set<tagint> births;    // IDs of atoms that a fix made in a run, until lists are new
+    void check_births();
     std::vector<std::uintptr_t> there;
     uint64_t fingerprint() const;
     std::vector<std::uintptr_t> present() const;

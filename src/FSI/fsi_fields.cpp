@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -229,9 +230,36 @@ void Fields::unpack_restart(int i, int nth)
     error->one(FLERR,
                "The restart file was written by another version of the FSI package: it does not "
                "say what it has of each atom");
-  const double *const values = restart_values(atom->extra[i], nth);
+  take(i, restart_values(atom->extra[i], nth));
+}
+
+void Fields::take(int i, const double *values)
+{
   for (auto &f : fields)
     if (f.in_file > 0) std::copy_n(values + f.in_file, f.columns, f.at(i));
+}
+
+std::vector<double> Fields::pack_all() const
+{
+  std::vector<double> rows, row(restart_size() + 1);
+  for (int i = 0; i < atom->nlocal && any(RESTART); i++) {
+    pack_restart(i, row.data());
+    row.back() = (double) atom->tag[i];
+    if (std::count(row.begin() + 1, row.end() - 1, 0.0) < (int) row.size() - 2)
+      rows.insert(rows.end(), row.begin(), row.end());
+  }
+  return rows;
+}
+
+void Fields::unpack_all(const std::vector<double> &rows)
+{
+  std::map<double, const double *> of_id;
+  for (size_t k = 0; k < rows.size(); k += (size_t) rows[k] + 1)
+    of_id[rows[k + (size_t) rows[k]]] = &rows[k];
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto found = of_id.find((double) atom->tag[i]);
+    if (found != of_id.end()) take(i, found->second);
+  }
 }
 
 const double *FSI::restart_values(const double *extra, int nth)

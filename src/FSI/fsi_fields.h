@@ -64,6 +64,10 @@ namespace FSI {
     int restart_size() const;
     int pack_restart(int i, double *buf) const;
     void unpack_restart(int i, int nth);
+    // the same from one fix to the next in its place: rows, each with the atom's ID behind it, of
+    // all atoms that have other numbers than 0
+    std::vector<double> pack_all() const;
+    void unpack_all(const std::vector<double> &);
 
    private:
     struct Field {
@@ -90,6 +94,7 @@ namespace FSI {
     Field *find(const std::string &name);
     void set(Field, bool wanted);
     void resize(Field &, int rows);
+    void take(int i, const double *values);
     void free(Field &);
   };
 

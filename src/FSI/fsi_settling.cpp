@@ -116,7 +116,10 @@ void Settling::run(int sweeps)
   points.resize(POINT * nall);
   for (int j = 0; j < nall; j++) {
     const bool counts = step.walls.is_before_planes(atom->x[j]);
-    points[POINT * j + 3] = counts ? atom->rmass[j] / atom->rho[j] : 0.0;
+    // densities of walls, and of solids by sums, are made anew when a run begins
+    const State &s = disc.state[atom->type[j]];
+    const double rho = s.species == RIGID || s.species == SOLID ? s.rho0 : atom->rho[j];
+    points[POINT * j + 3] = counts ? atom->rmass[j] / rho : 0.0;
   }
   mirrors.assign(1, Mirror(step.walls, {}));
   for (const auto &s : step.walls.reflections) mirrors.emplace_back(step.walls, s);

@@ -51,8 +51,8 @@ FACTORS = {
         "plane stress": {"body": "fsi/solid/tl", "solid": "plane stress volumes plain volumetric local gradient linear"},
         "hypo total": {"body": "fsi/solid/tl", "solid": "law hypo artificial/visc 0.1 0", "stress": " "},
         "volumetric": {"body": "fsi/solid/tl", "solid": "volumetric smoothed artificial/visc 0.1 0", "material": "poisson 0.45"},
-        "thin": {"body": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fsi": "thin 2", "settings": {"wide": 2}},
-        "own spacing": {"body": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fsi": "spacing 2 0.008", "settings": {"own": 0.8}},
+        "thin": {"body": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fsi": "thin 2 thin 8", "settings": {"wide": 2}},
+        "own spacing": {"body": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fsi": "spacing 2 0.008 spacing 8 0.008", "settings": {"own": 0.8}},
     },
     "contact": {"one body": {}, "contact": {"solid": "contact 1.5", "settings": {"bodies": 2}}, "self": {"solid": "contact 1.5 self yes", "settings": {"hairpin": True}}},
     "body": {
@@ -71,13 +71,14 @@ FACTORS = {
     },
     "ends": {
         "no ends": {},
-        "inlet and outlet": {"ends": "fix in water fsi/inlet <xlo> <-0.12> velocity <0.4> 0 0 buffer 0.06\nfix out water fsi/outlet <xhi> <0.12> buffer 0.06"},
-        "two pressures": {"ends": "fix in water fsi/inlet <xlo> <-0.12> pressure {p1} buffer 0.06\nfix out water fsi/outlet <xhi> <0.12> pressure {p0} buffer 0.06"},
-        "absorbing ends": {"ends": "fix in water fsi/inlet <xlo> <-0.12> velocity <0.4> 0 0 absorb auto buffer 0.06\nfix out water fsi/outlet <xhi> <0.12> pressure free buffer 0.06"},
+        "inlet and outlet": {"ends": "fix in fluid fsi/inlet <xlo> <-0.12> velocity <0.4> 0 0 buffer 0.06\nfix out fluid fsi/outlet <xhi> <0.12> buffer 0.06"},
+        "two pressures": {"ends": "fix in fluid fsi/inlet <xlo> <-0.12> pressure {p1} buffer 0.06\nfix out fluid fsi/outlet <xhi> <0.12> pressure {p0} buffer 0.06"},
+        "absorbing ends": {"ends": "fix in fluid fsi/inlet <xlo> <-0.12> velocity <0.4> 0 0 absorb auto buffer 0.06\nfix out fluid fsi/outlet <xhi> <0.12> pressure free buffer 0.06"},
         "stream": {"regions": "region zone block [-0.11 -0.02] INF INF INF INF units box",
-                   "lines": "fix stream water fsi/stream <0.4> 0 NULL region zone rate 50 density 20", "settings": {"stream": True}},
+                   "lines": "fix stream fluid fsi/stream <0.4> 0 NULL region zone rate 50 density 20", "settings": {"stream": True}},
     },
-    "float": {"no float": {}, "floating": {"settings": {"buoy": True}, "lines": "fix buoy buoy rigid single{flat}"}},
+    "float": {"no float": {}, "floating": {"settings": {"buoy": True}, "lines": "fix buoy buoy rigid single{flat}"},
+              "two floats": {"settings": {"buoy": True, "floats": 2}, "before": "atom_modify map yes", "lines": "fix buoy buoy rigid/small molecule"}},
     "grains": {"no grains": {}, "grains": {"settings": {"grains": 6}}},
     "gravity": {"no gravity": {}, "gravity": {"gravity": True}, "gravity of water": {"gravity": "water"}},
     "step": {"fixed step": {}, "adaptive step": {"lines": "fix dt all fsi/dt 4 cfl 0.3"}, "checked step": {"lines": "fix dt all fsi/dt 4 check warn"}, "adaptive sub-steps": {"lines": "fix dt all fsi/dt 4 cfl/fluid 0.3 substeps auto"}},
@@ -88,11 +89,35 @@ FACTORS = {
         "delete, no compress": {"between": "delete_atoms group spot compress no", "settings": {"spot": True}},
         "fsi/set": {"between": "fsi/set water density 1000.5"},
         "redefined": {"between": "{again}"},
-        "timestep": {"between": "timestep 1.3e-4"},
+        "timestep": {"stays": "timestep 1.3e-4"},
         "write_restart": {"between": "write_restart between.restart"},
+    },
+    "command": {
+        "no command": {},
+        "velocity": {"between": "velocity moves set <0.05> 0.02 NULL sum yes units box"},
+        "displace_atoms": {"between": "displace_atoms moves move <0.0006> 0 0 units box"},
+        "create_atoms": {"settings": {"spot": True}, "between": "delete_atoms group spot compress no\ngroup old union all\nlattice {lattice} 0.01 origin 0.5 0.5 {z}\n"
+                         "create_atoms 1 region refill\ngroup spot subtract all old\ngroup fluid type 1 5 7\ngroup water type 1 5\ngroup moves union moves spot\nvelocity spot set <0.3> 0.05 0 units box\nrun 0"},
+        "reset_timestep": {"between": "reset_timestep 5 time $(time:%.17g)"},
+        "change_box": {"between": "{wider}"},
+        "given again": {"between": "{all again}"},
+        "neighbor": {"stays": "neighbor 0.006 bin\nneigh_modify delay 0 every 1 page 200000 one 4000"},
     },
     "density": {"continuity": {}, "article": {"fsi": "scheme article"}, "summation": {"fsi": "fluid summation"}, "ratio": {"fsi": "solid ratio"}},
     "symmetry": {"no plane": {}, "symmetry plane": {"settings": {"plane": True}}},
+    "fluids": {"one fluid": {}, "oil beside": {"settings": {"oil": "beside"}}, "oil above": {"settings": {"oil": "above"}}, "drop": {"settings": {"oil": "drop"}}},
+    "lattice": {"even": {}, "unequal masses": {"settings": {"uneven": 0.1}}, "turned body": {"settings": {"turn": 0.3}},
+                "two materials": {"settings": {"soft": True}}},
+    "setup": {"usual setup": {}, "boundary m": {"settings": {"edge": "m"}}, "far ghosts": {"regions": "comm_modify cutoff 0.065"},
+              "slabs": {"before": "atom_modify map hash sort 0 0.0\nprocessors 1 * *"}},
+    "other fix": {
+        "no other fix": {},
+        "addforce": {"lines": "fix push fluid addforce <0.005> 0.001 0"},
+        "setforce": {"lines": "fix guide body setforce NULL 0 NULL"},
+        "spring": {"lines": "fix tie body spring tether 5 <0.03> 0.07 NULL 0.01"},
+        "viscous": {"lines": "fix damp fluid viscous 0.05"},
+        "momentum": {"lines": "fix rest water momentum 5 linear 1 1 0"},
+    },
 }
 FACTOR_OF = {level: factor for factor, levels in FACTORS.items() for level in levels}
 FIRST = {factor: next(iter(levels)) for factor, levels in FACTORS.items()}
@@ -107,8 +132,11 @@ TOTAL = all_of("solid", *UPDATED)
 
 # {reason: pairs of levels, each a level or several}: what makes no sense, or is not what the level is for
 NOT_DRAWN = {
-    "there is nothing to touch, hold, or take sub-steps": [("no solid", all_of("contact") + all_of("body") + ["sub-steps", "adaptive sub-steps", "distance", "extrapolated", "no guard", "solid slip"])],
+    "there is nothing to touch, hold, or take sub-steps": [("no solid", all_of("contact") + all_of("body") + ["sub-steps", "adaptive sub-steps", "distance", "extrapolated", "no guard", "solid slip", "turned body", "two materials", "setforce", "spring"])],
     "sub-steps are those of fix fsi or those of fix fsi/dt": [("sub-steps", "adaptive sub-steps")],
+    "what is bonded to its image ends at the plane, along it": [("symmetry plane", "turned body")],
+    "a group has one hole": [("create_atoms", ("delete_atoms", "delete, no compress"))],
+    "LAMMPS' fix momentum takes the mass of a run's start": [("momentum", all_of("ends", "stream"))],
     "self-contact is of one body, of which one end is held": [("self", ("rigid", "thin", "own spacing"))],
 }
 
@@ -130,6 +158,10 @@ REFUSED = {
     **{(mode, "sub-steps"): (r"substeps requires pair_style fsi/solid/tl", {"solid": "paper"}) for mode in ("article", "ratio")},
     ("plane stress", "3D"): (r"plane stress requires dimension 2", {}),
     **{("reset_atoms", solid): (r"reset_atoms id", {}) for solid in TOTAL},
+    **{("setforce", level): (r"does not go with fix guide", {"solid": "svk"}) for level in ("sub-steps", "adaptive sub-steps")},
+    **{("reset_timestep", level): (r"[Cc]annot reset timestep", {}) for level in ("moving particles", "driven particles", "adaptive step", "adaptive sub-steps")},
+    ("reset_atoms", "two floats"): (r"reset_atoms id", {}),
+    ("delete_atoms", "two floats"): (r"style rigid/small\) knows a body by the ID", {}),
     ("reset_atoms", "sub-steps"): (r"reset_atoms id", {"solid": "svk"}),
 }
 
@@ -262,7 +294,6 @@ ELSEWHERE = {
     "fix_fsi_wall_particle": {"test_wall_particles": "yes mean tension", "test_fuzz": "auto"},
     "fix_fsi_watch": {"test_watch": "fsi/watch action density distance energy lost off stop warn"},
     "fsi_displace": {"test_displace": "fsi/displace all"},
-    "fsi_material": {"test_materials": "sound"},
     "fsi_clamp": {"test_clamp_command": "fsi/clamp"},
     "fsi_dump": {"test_presets": "fsi/dump file"},
     "fsi_run": {"test_presets": "fsi/run"},

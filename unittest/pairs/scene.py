@@ -20,8 +20,8 @@ STEPS = (16, 12, 12)        # before what is done between runs, after it, and af
 DT = 2e-4
 SLOTS = {  # what a level may have: how several are joined, what there is if none has it
     "dim": None, "kernel": None, "full": False, "settings": {}, "body": "", "gravity": "", "ground": None, "sides": None, "floor": None, "ends": "", "refine": "", "stress": "", "water": "",
-    "fluid": " ", "solid": " ", "fsi": " ", "mirror": " ", "material": " ", "lines": "\n", "regions": "\n", "between": "\n"}
-WATER, BODY, FLOOR, BUOY, FINE, GRAIN = range(1, 7)
+    "fluid": " ", "solid": " ", "fsi": " ", "mirror": " ", "material": " ", "lines": "\n", "regions": "\n", "between": "\n", "stays": "\n", "before": "\n"}
+WATER, BODY, FLOOR, BUOY, FINE, GRAIN, OIL, SOFT = range(1, 9)
 
 
 def turned(text, sign):
@@ -50,6 +50,7 @@ class PairScene:
     cut: bool = False        # each run in two
     balanced: bool = False    # ranks of tiles that move
     threads: int = 0         # of styles with suffix omp; 0: the plain ones
+    idle: bool = False    # commands between runs that change nothing
 
     @cached_property
     def has(self):
@@ -141,10 +142,14 @@ class PairScene:
             x = np.vstack([one((3 - thick, 3)), one((7, 7 + thick)), one((3, 7), (y[0], y[0] + thick))])
         else:
             x = one((1, 1 + wide))
+        turn = self.setting("turn", 0)
+        if turn:
+            about = np.array([3 * DX, self.low * DX, 0])
+            x = about + (x - about) @ np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
         mol = np.ones(len(x), int)
         if self.setting("bodies") == 2:
             # beside it, a little less than the range of contact from it
-            more = one((1, 1 + wide)) + [(wide + 1.45 - own) * DX, 0, 0]
+            more = x + [(wide + 1.45 - own) * DX / np.cos(turn), 0, 0]
             x, mol = np.vstack([x, more]), np.append(mol, np.full(len(more), 2))
         return x, mol
 
@@ -157,11 +162,13 @@ class PairScene:
     def parts(self):
         """(positions, types, molecule IDs)"""
         body, mol = self.bodies()
-        parts = [(body, BODY, mol)]
+        soft = body[:, 1] > (self.low + (4 if self.dim == 2 else 2)) * DX if self.setting("soft") else np.zeros(len(body), bool)
+        parts = [(body, np.where(soft, SOFT, BODY), mol)]
         if self.has["floor"] is not None:
             parts.append((self.block((-HALF - 6, HALF + 6) if self.open else (-HALF, HALF), self.floor_layers), FLOOR, 0))
         if self.setting("buoy"):
-            parts.append((self.block((-9, -5), (self.high // 2 - 2, self.high // 2 + 2) if self.dim == 2 else (2, 5), (1, 4)), BUOY, 0))
+            x = self.block((-9, -5), (self.high // 2 - 2, self.high // 2 + 2) if self.dim == 2 else (2, 5), (1, 4))
+            parts.append((x, BUOY, np.where(x[:, 0] < -7 * DX, 5, 6) if self.setting("floats") else 0))
         if self.setting("grains"):
             n = self.setting("grains")
             k = np.arange(n)
@@ -169,10 +176,12 @@ class PairScene:
             parts.append((at if self.dim == 3 else at * [1, 1, 0], GRAIN, 0))
         water = self.block((-HALF, HALF), (0, self.high))
         for x, type_, _ in parts:
-            if type_ != GRAIN and len(x):
+            if type_ is not GRAIN and len(x):
                 water = water[[np.abs(x - w).max(1).min() > 0.6 * DX and np.linalg.norm(x - w, axis=1).min() > 0.75 * DX for w in water]]
-        parts.insert(0, (water, WATER, 0))
-        return (np.vstack([p for p, _, _ in parts]), np.concatenate([np.full(len(p), t) for p, t, _ in parts]),
+        oil = {None: lambda x, y: x > 1, "beside": lambda x, y: x < -6 * DX, "above": lambda x, y: y > self.high // 2 * DX,
+               "drop": lambda x, y: np.hypot(x + 3 * DX, y - self.high / 2 * DX) < 2.6 * DX}[self.setting("oil")]
+        parts.insert(0, (water, np.where(oil(water[:, 0], water[:, 1]), OIL, WATER), 0))
+        return (np.vstack([p for p, _, _ in parts]), np.concatenate([np.broadcast_to(t, len(p)) for p, t, _ in parts]),
                 np.concatenate([np.broadcast_to(m, len(p)) for p, _, m in parts]))
 
     @cached_property
@@ -183,10 +192,11 @@ class PairScene:
         held = self.held(x, kind)
         fixed = np.isin(kind, (FLOOR, BUOY)) | held
         flat = np.array([1, 1, self.dim == 3])
-        size = np.where(kind == BODY, self.setting("own", 1.0), 1.0)[:, None] * DX
+        solids, fluids = np.isin(kind, (BODY, SOFT)), np.isin(kind, (WATER, OIL))
+        size = np.where(solids, self.setting("own", 1.0), 1.0)[:, None] * DX
         v = np.array([0.3, 0.05, 0.1]) + random.uniform(-0.1, 0.1, x.shape)
-        solid = (kind == BODY) & ~held
-        middle = x[kind == BODY].mean(0) if solid.any() else 0
+        solid = solids & ~held
+        middle = x[solids].mean(0) if solid.any() else 0
         v[solid, 0] += 3 * (x - middle)[solid, 1]
         v[solid, 1] += 4 * (x - middle)[solid, 1]
         if self.setting("hairpin"):
@@ -196,16 +206,20 @@ class PairScene:
             v[held] = 0
         v[kind == FLOOR] = 0
         x = x + np.where(fixed[:, None], 0, random.uniform(-0.06, 0.06, x.shape) * size) * flat
-        rho0 = np.array([0, 1000, 1100, 1000, 600, 1000, 2000.])[kind]
+        x[:, 1] = np.where(solids & ~held, np.maximum(x[:, 1], self.root * DX + 1e-5), x[:, 1]) if self.setting("held") else x[:, 1]
+        rho0 = np.array([0, 1000, 1100, 1000, 600, 1000, 2000, 800, 1300.])[kind]
         name, hdx = self.has["kernel"].split()
         psi = {s: Kernel(name, self.dim, float(hdx) * s).lattice_sum(s, self.dim) for s in np.unique(size)}
         mass = rho0 / np.array([psi[s] for s in size[:, 0]])
         mass[kind == GRAIN] = 2000 * np.pi * 0.002**2 * (1 if self.dim == 2 else 4 / 3 * 0.002)    # discs and spheres
-        rho = np.where(kind == WATER, rho0 * (1 + random.uniform(-1e-3, 1e-3, len(x))), rho0)
+        uneven = np.random.default_rng(2).uniform(-1, 1, (len(x), 4)) * self.setting("uneven", 0)
+        mass *= 1 + np.where(solids | fluids, 0.5 * uneven[:, 0], 0)    # more is too much noise for densities by sums
+        x = x + np.where(fluids[:, None], uneven[:, 1:] * DX, 0) * flat
+        rho = np.where(fluids, rho0 * (1 + random.uniform(-1e-3, 1e-3, len(x))), rho0)
         return {"x": x, "v": v * flat, "type": kind, "mol": mol, "rho": rho, "mass": mass}
 
     def held(self, x, kind):
-        return (kind == BODY) & bool(self.setting("held")) & ((x[:, 1] < self.root * DX) | bool(self.setting("all held")))
+        return np.isin(kind, (BODY, SOFT)) & bool(self.setting("held")) & ((x[:, 1] < self.root * DX) | bool(self.setting("all held")))
 
     @property
     def flies(self):
@@ -220,7 +234,7 @@ class PairScene:
         if self.shuffled:
             random = np.random.default_rng(self.shuffled)
             ids, order = random.permutation(ids), random.permutation(n)
-        lines = ["scene of pairs", "", f"{n} atoms", "6 atom types", ""]
+        lines = ["scene of pairs", "", f"{n} atoms", "8 atom types", ""]
         box = self.box if self.sign > 0 else np.array([-self.box[0][::-1], *self.box[1:]])
         lines += [f"{lo!r} {hi!r} {a}lo {a}hi" for (lo, hi), a in zip(box.tolist(), "xyz")]
         grains = bool(self.setting("grains"))
@@ -239,7 +253,7 @@ class PairScene:
 
     # ---- deck ----
     def head(self, file):
-        x, y, z = ("p" if p else "f" for p in self.periodic)
+        x, y, z = ("p" if p else self.setting("edge", "f") for p in self.periodic)
         grains = self.setting("grains")
         return f"""
 units si
@@ -247,10 +261,12 @@ dimension {self.dim}
 boundary {x} {y} {z}
 atom_style {'hybrid fsi sphere' if grains else 'fsi'}
 newton {self.newton}
+{self.has["before"]}
 {'comm_modify vel yes' if grains else ''}
 read_data {file}
 group water type 1 5
-group body type 2
+group fluid type 1 5 7
+group body type 2 8
 group floor type 3
 group buoy type 4
 group grains type 6
@@ -261,6 +277,7 @@ group moves subtract all root floor buoy
 region spot block [-0.045 -0.02] 0.02 0.05 INF INF units box
 group spot region spot
 group spot intersect spot water
+region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
 {'set type 6 density/disc 2000' if grains and self.dim == 2 else ''}
 """
 
@@ -275,16 +292,18 @@ group spot intersect spot water
 
     @property
     def coeff(self):
-        names = f"water {'body' if self.has['body'] else 'water'} wall buoy water {'NULL' if self.setting('grains') else 'water'}"
+        body, soft = ("body", "soft" if self.setting("soft") else "body") if self.has["body"] else ("water", "water")
+        names = f"water {body} wall buoy water {'NULL' if self.setting('grains') else 'water'} {'oil' if self.setting('oil') else 'water'} {soft}"
+        more = f"{'' if 'poisson' in self.has['material'] else 'poisson 0.3'} {self.has['material']}"
         lines = [f"fsi/material water fluid rho 1000 {self.has['water'] or 'viscosity 1'}", "fsi/material wall wall rho 1000", "fsi/material buoy wall rho 600",
-                 f"fsi/material body solid rho 1100 young 5e4 {'' if 'poisson' in self.has['material'] else 'poisson 0.3'} {self.has['material']}"]
+                 f"fsi/material body solid rho 1100 young 5e4 {more}", f"fsi/material soft solid rho 1300 young 2e4 {more}", "fsi/material oil fluid rho 800 viscosity 3 sound 12"]
         hybrid = "hybrid" in self.pair
         lines.append(f"pair_coeff * * {'fsi/fluid ' if hybrid else ''}NULL {names}")
         if self.has["body"]:
-            lines.append(f"pair_coeff * * {self.has['body']} NULL NULL body NULL NULL NULL NULL")
+            lines.append(f"pair_coeff * * {self.has['body']} NULL NULL body NULL NULL NULL NULL NULL {soft}")
         if self.setting("grains"):
-            lines += ["pair_coeff 1*5 6 fsi/grain".replace("1*5", "1"), *(["pair_coeff 5 6 fsi/grain"] if self.has["refine"] else ["pair_coeff 5 6 none"]),
-                      *(f"pair_coeff {k} 6 none" for k in (2, 3, 4, 6))]
+            lines += ["pair_coeff 1 6 fsi/grain", *(["pair_coeff 5 6 fsi/grain"] if self.has["refine"] else ["pair_coeff 5 6 none"]),
+                      *(f"pair_coeff {k} 6 none" for k in (2, 3, 4, 6)), "pair_coeff 6 7 fsi/grain" if self.setting("oil") else "pair_coeff 6 7 none", "pair_coeff 6 8 none"]
         return "\n".join(lines)
 
     @property
@@ -298,6 +317,15 @@ group spot intersect spot water
         lines = [self.coeff, has["regions"], "neigh_modify every 1 delay 0 check yes", f"neighbor {self.skin * DX!r} bin", self.fsi]
         if has["stress"]:
             lines.append(f"fix stress all fsi/stress {has['stress']}")
+        lines += self.fixes()
+        lines.append("compute state all fsi/atom rho")
+        if self.energy:
+            lines.append("compute energy all fsi/energy")
+        lines += [f"timestep {self.dt!r}", "thermo_modify lost error norm no", "thermo 1000000"]
+        return "\n".join(filter(None, lines))
+
+    def fixes(self):
+        has, lines = self.has, []
         if has["gravity"]:
             lines.append(f"fix gravity {'all' if has['gravity'] is True else has['gravity']} gravity 9.81 vector <0.3> -1 0")
         lines += self.walls()
@@ -308,11 +336,7 @@ group spot intersect spot water
                      .replace("{still}", "NULL" if self.dim == 2 else "v_zero"))
         if has["refine"]:
             lines.append(f"fix refine water fsi/refine 6 types 1 5 {has['refine']}")
-        lines.append("compute state all fsi/atom rho")
-        if self.energy:
-            lines.append("compute energy all fsi/energy")
-        lines += [f"timestep {self.dt!r}", "thermo_modify lost error norm no", "thermo 1000000"]
-        return "\n".join(filter(None, lines))
+        return lines
 
     def walls(self):
         has, lines = self.has, []
@@ -326,7 +350,7 @@ group spot intersect spot water
         if self.has["full"] and not self.periodic[1] and not (self.plane and self.walled):
             mirrors.append(f"yhi {self.high * DX}")
         if mirrors:
-            lines.append(f"fix mirror water fsi/wall/mirror {' '.join(mirrors)}")
+            lines.append(f"fix mirror fluid fsi/wall/mirror {' '.join(mirrors)}")
         if self.plane:
             lines.append("fix plane all fsi/wall/mirror ylo 0 symmetry yes")
         if has["floor"] is not None:
@@ -337,7 +361,24 @@ group spot intersect spot water
 
     def between(self):
         again = "\n".join([self.fsi, *self.walls()])
-        return self.has["between"].replace("{again}", again)
+        text = f"{self.has['between']}\n{self.has['stays']}"
+        if self.watched and "reset_timestep" in text:    # LAMMPS refuses it with fix ave/atom
+            text = f"unfix w_mean\n{text}\nfix w_mean all ave/atom 1 2 2 c_w_atom[1] c_w_surface"
+        text = text.replace("{again}", again).replace("{all again}", "\n".join(self.fixes()))
+        return text.replace("{lattice}", "sq" if self.dim == 2 else "sc").replace("{z}", "0" if self.dim == 2 else "0.5").replace("{wider}", self.wider()) + (self.idling() if self.idle else "")
+
+    def wider(self):
+        axes = [f"{axis} delta -0.01 0.01" for axis, periodic in zip("xyz", self.periodic) if not periodic]
+        return f"change_box all {' '.join(axes)}" if axes else ""
+
+    def idling(self):
+        """After the first run: step numbers of the same phase, what is there given again, nothing added. Not: what is refused, a box that absorbers measure,
+        walls that have moved since."""
+        given = lambda *levels: any(level in self.row for level in levels)    # noqa: E731
+        steps = "" if given("moving particles", "driven particles", "adaptive step", "adaptive sub-steps") else "reset_timestep $(step+60) time $(time:%.17g)"
+        walls = [] if given("moving mirror", "moving particles", "driven particles") else self.walls()
+        return "\n".join(["", steps, "" if self.open else self.wider(), "velocity all set 0 0 0 sum yes units box", "displace_atoms all move 0 0 0 units box", "balance 1.1 shift xy 5 1.05",
+                          self.coeff, self.fsi, *walls, "region nowhere block -9 -8 -9 -8 INF INF units box", "delete_atoms region nowhere compress no", "run 0"])
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)
@@ -353,6 +394,7 @@ group spot intersect spot water
 {self.steps(a)}
 variable gone equal {'$(mass(spot):%.17g)' if self.setting('spot') else 0}
 {self.between().replace('between.restart', f'{folder}/between.restart')}
+variable come equal {'$(mass(spot):%.17g)' if self.setting('spot') else 0}
 {self.steps(b)}
 run 0
 write_restart {folder}/mid.restart
@@ -360,7 +402,7 @@ write_restart {folder}/mid.restart
 {self.end(folder)}""", self.sign)
 
     def steps(self, n):
-        return f"run {n // 2}\nrun {n - n // 2}" if self.cut else f"run {n}"
+        return f"run {11 * n // 16}\nrun {n - 11 * n // 16}" if self.cut else f"run {n}"
 
     def outputs(self):
         """Commands that look at the scene from all sides"""
@@ -375,7 +417,7 @@ write_restart {folder}/mid.restart
 
     def continued(self, folder):
         """From the restart file"""
-        return turned(f"read_restart {folder}/mid.restart\n{self.pair if self.setting('pair again') else ''}\n{self.physics()}\n{self.has['between'] if 'timestep' in self.row else ''}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
+        return turned(f"read_restart {folder}/mid.restart\n{self.pair if self.setting('pair again') else ''}\n{self.physics()}\n{self.has['stays']}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
 
     def end(self, folder):
         count = 'if "$(is_defined(fix,dt))" then "unfix dt"\ntimestep 1e-9\nneighbor 1e-13 bin\nrun 1\n' if self.counted else ""
@@ -415,7 +457,7 @@ def go(scene, folder, text=None):
                 lmp.command(line)
         state = read(folder)
         state.time = lmp.extract_variable("now")
-        state.extra["deleted"] = lmp.extract_variable("gone") if text is None else 0.0
+        state.extra["deleted"] = lmp.extract_variable("gone") - lmp.extract_variable("come") if text is None else 0.0
         for name, ends in {"in": "in", "out": "out", "refine": "refine"}.items():
             if lmp.has_id("fix", ends):
                 state.extra[name] = np.array([lmp.extract_fix(ends, 0, 1, k) for k in range(3)])

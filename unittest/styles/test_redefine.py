@@ -90,6 +90,15 @@ def test_the_same_again(tmp_path, whole, scene, name, way):
     assert differences(whole(scene), frame(done)) == {}
 
 
+@pytest.mark.parametrize("scene, ranks", [("updated", 1), ("updated", 2), ("levels", 1)])
+def test_energies_of_fix_fsi_again(tmp_path, scene, ranks):
+    """The sum of energies does not jump: what friction and ends have taken is kept."""
+    say = 'run 0\nprint "sum $(c_energy:%.17g)"\n'
+    done = run(tmp_path, deck(scene) + f"thermo_style custom step c_energy\nrun {STEPS}\n{say}{part(scene, 'fsi')}{say}", ranks, m_fsi=MATERIALS)
+    before, after = map(float, re.findall(r"^sum (\S+)$", done.output, re.M))
+    assert abs(after - before) < 1e-12 * before
+
+
 # ---- another one ---------------------------------------------------------------------------------
 
 CASES = [(scene, name, text, refused, way) for (scene, name), others in OTHER.items() for text, refused in others.items() if name != "refine"    # splits in run 0: fuzz_runs.py has it
@@ -203,6 +212,18 @@ def test_wall_particles_join_a_motion_that_sums_over_ranks(tmp_path, ranks):
     done = run(tmp_path, text + f"run {STEPS}\n" + dump("end"), ranks, m_fsi=MATERIALS)
     plain = run(tmp_path / "plain", deck("tank") + f"run {STEPS}\n" + dump("end"), m_fsi=MATERIALS)
     assert len(frame(done)) == len(frame(plain)) + 3
+
+
+@pytest.mark.parametrize("ranks", (1, 2))
+@pytest.mark.parametrize("ids", ("max", "next"))
+def test_atoms_that_another_fix_makes_beside_ends(tmp_path, ids, ranks):
+    """Id next counts on from the largest ID that there was when the fix was defined: copies of the ends have those."""
+    text = deck("open") + f"region up block 0.05 0.15 0.12 0.2 -0.001 0.001 units box\nfix rain water deposit 4 1 20 8765 region up near 0.02 units box id {ids}\n"
+    done = lammps(tmp_path, text + "run 100\n" + dump("end"), ranks, m_fsi=MATERIALS)
+    if answered(done, "ERROR: A fix made atoms with IDs that others have, as .* id max" if ids == "next" else ""):
+        return
+    found = frame(done)["id"]
+    assert len(set(found)) == len(found)
 
 
 @pytest.mark.parametrize("thin", (2, 3))
