@@ -44,6 +44,14 @@ uint64_t Changes::fingerprint() const
   return hash;
 }
 
+void Changes::begin_run()
+{
+  stale = true;
+  pours = false;
+  for (const auto *fix : modify->get_fix_list())
+    pours |= utils::strmatch(fix->style, "^deposit") || utils::strmatch(fix->style, "^pour");
+}
+
 // fix deposit and fix pour with id next count on from what there was when they were defined
 void Changes::check_births()
 {
@@ -63,12 +71,12 @@ void Changes::check_births()
 void Changes::made(int i)
 {
   forget();
-  if (update->whichflag == 1) births.insert(atom->tag[i]);
+  if (pours && update->whichflag == 1) births.insert(atom->tag[i]);
 }
 
 void Changes::in_step()
 {
-  if (neighbor->ago == 0) check_births();
+  if (pours && neighbor->ago == 0) check_births();
   nlocal = atom->nlocal;
   stale = false;
 }

@@ -28,13 +28,13 @@ namespace FSI {
 
   class Changes : protected Pointers {
    public:
-    explicit Changes(LAMMPS *lmp) : Pointers(lmp), nlocal(0), known(0), stale(true) {}
+    explicit Changes(LAMMPS *lmp) : Pointers(lmp), nlocal(0), known(0), stale(true), pours(false) {}
 
     // particles of this rank
-    void begin_run() { stale = true; }    // in init(): nothing is known of them
-    void forget() { stale = true; }       // one was made, or what others know of it is gone
-    void made(int i);                     // in set_arrays()
-    void in_step();                       // the state is brought up to date
+    void begin_run();                  // in init(): nothing is known of them
+    void forget() { stale = true; }    // one was made, or what others know of it is gone
+    void made(int i);                  // in set_arrays()
+    void in_step();                    // the state is brought up to date
     void end_run() { known = fingerprint(); }
     bool of_atoms() const;    // since then
     bool any_mass() const;    // has any on any rank been in a run? all ask together
@@ -49,7 +49,7 @@ namespace FSI {
    private:
     int nlocal;
     uint64_t known;
-    bool stale;
+    bool stale, pours;          // pours: does another fix make atoms?
     std::set<tagint> births;    // IDs of atoms that a fix made in a run, until lists are new
     void check_births();
     std::vector<std::uintptr_t> there;
