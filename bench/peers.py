@@ -137,7 +137,7 @@ def channel(kept, turns):
 def ranks(kept, what, text, turns):
     """Two ranks and two threads over one, and these threads over these ranks, by the clock; only where nothing else runs."""
     one, two, threads = in_turns(kept, [(text, 1), (text, 2), (f"package omp 2\nsuffix omp\n{text}", 1)], turns)
-    busy = min(one[2] + two[2] + [use / 2 for use in threads[2]])  # of a core by both threads
+    busy = min(one[2] + two[2])  # threads wait for each other
     quiet = busy > 0.95
     rows = []
     for label, fast, slow in (("2 ranks over 1", two, one), ("2 threads over 1", threads, one), ("2 threads over 2 ranks", threads, two)):
