@@ -63,6 +63,11 @@ void AtomVecFSI::grow_pointers()
   if (!atom->radius_flag) atom->radius = rmass;
 }
 
+AtomVecFSI *AtomVecFSI::of(Atom *atom)
+{
+  return dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+}
+
 AtomVecFSI::~AtomVecFSI()
 {
   if (!atom->radius_flag) atom->radius = nullptr;

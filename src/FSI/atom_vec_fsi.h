@@ -41,6 +41,7 @@ class AtomVecFSI : virtual public AtomVec {
  public:
   AtomVecFSI(class LAMMPS *);
   ~AtomVecFSI() override;
+  static AtomVecFSI *of(class Atom *);    // that style, of a hybrid, too; or null
 
   void grow_pointers() override;
   void create_atom_post(int) override;
@@ -54,7 +55,8 @@ class AtomVecFSI : virtual public AtomVec {
   // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds
   // of solids are still of its spacing and kernel
   std::unique_ptr<FSI::Record> of_fix_fsi;
-  // what it, and walls of particles by their ID, had of each particle (Fields::pack_all)
+  // until the next run: what it, and walls of particles by their ID, had of each particle
+  // (Fields::pack_all)
   std::map<std::string, std::vector<double>> of_fixes;
 
  private:

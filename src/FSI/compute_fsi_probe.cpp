@@ -70,8 +70,7 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
   for (const int q : quantity)
     for (const auto &place : places)
       if (of_body(q) || of_body(quantity[0])) {
-        if (!of_body(q) || !of_body(quantity[0]) ||
-            !std::equal(place.from, place.from + 3, place.to))
+        if (of_body(q) != of_body(quantity[0]) || !std::equal(place.from, place.from + 3, place.to))
           error->all(FLERR, "Compute fsi/probe ux, uy, uz need points, and no other quantity");
       } else if (place.line != (q == LEVEL || q == WET))
         error->all(FLERR, "Compute fsi/probe {} needs {}", q < SAMPLED ? names[q] : "c_ID",

@@ -125,7 +125,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   pre_exchange_migrate = 1;
   set_fields();
   register_fields();
-  auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  auto *const atoms = AtomVecFSI::of(atom);
   if (!atoms->of_fix_fsi || !changes.any_mass()) return;
   goes_on(*atoms->of_fix_fsi, "in the last run");
   fields.unpack_all(atoms->of_fixes[""]);
@@ -136,7 +136,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 FixFSI::~FixFSI()
 {
   if (parts.empty()) return;
-  auto *const atoms = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  auto *const atoms = AtomVecFSI::of(atom);
   atoms->of_fix_fsi = std::make_unique<Record>(record(ledger.energy_out));
   atoms->of_fixes[""] = fields.pack_all();
 }

@@ -65,13 +65,13 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   Record record(lmp, "fix fsi/wall/particle");
   fields.write(record);
   fields.read(record);
-  fields.unpack_all(dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fixes[id]);
+  fields.unpack_all(AtomVecFSI::of(atom)->of_fixes[id]);
 }
 
 // another one of this ID goes on with it
 FixFSIWallParticle::~FixFSIWallParticle()
 {
-  dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fixes[id] = fields.pack_all();
+  AtomVecFSI::of(atom)->of_fixes[id] = fields.pack_all();
 }
 
 void FixFSIWallParticle::init()

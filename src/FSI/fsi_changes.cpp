@@ -14,6 +14,7 @@
 #include "fsi_changes.h"
 
 #include "atom.h"
+#include "atom_vec_fsi.h"
 #include "compute.h"
 #include "domain.h"
 #include "error.h"
@@ -72,6 +73,12 @@ void Changes::made(int i)
 {
   forget();
   if (pours && update->whichflag == 1) births.insert(atom->tag[i]);
+}
+
+void Changes::set_up()
+{
+  there = present();
+  AtomVecFSI::of(atom)->of_fixes.clear();
 }
 
 void Changes::in_step()

@@ -39,8 +39,8 @@ namespace FSI {
     bool of_atoms() const;    // since then
     bool any_mass() const;    // has any on any rank been in a run? all ask together
 
-    // what a run points to
-    void set_up() { there = present(); }
+    // what a run points to; what fixes that are gone had of particles is not of now any more
+    void set_up();
     // in its first step: an error if it is another one; of pairs: if theirs are not known
     void check_pre_no() const;
     static void check_pre_no(LAMMPS *, const Changes *);

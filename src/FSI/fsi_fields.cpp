@@ -242,7 +242,8 @@ void Fields::take(int i, const double *values)
 std::vector<double> Fields::pack_all() const
 {
   std::vector<double> rows, row(restart_size() + 1);
-  for (int i = 0; i < atom->nlocal && any(RESTART); i++) {
+  if (!any(RESTART)) return rows;
+  for (int i = 0; i < atom->nlocal; i++) {
     pack_restart(i, row.data());
     row.back() = (double) atom->tag[i];
     if (std::count(row.begin() + 1, row.end() - 1, 0.0) < (int) row.size() - 2)

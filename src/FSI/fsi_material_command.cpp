@@ -27,7 +27,7 @@ using namespace FSI;
 // A name that is given again is the new material; a pair style has it from its next pair_coeff on.
 void FSIMaterial::command(int narg, char **arg)
 {
-  auto *const avec = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  auto *const avec = AtomVecFSI::of(atom);
   if (!avec) error->all(FLERR, "Fsi/material requires atom_style fsi before it");
   if (narg < 2)
     error->all(FLERR,

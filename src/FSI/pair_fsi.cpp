@@ -77,7 +77,7 @@ void PairFSI::coeff(int narg, char **arg)
   first_level = keeps ? narg - 2 : 0;
   check_pair_coeff(narg, arg);
   if (!allocated) allocate();
-  auto *const avec = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  auto *const avec = AtomVecFSI::of(atom);
   const std::vector<std::string> names(arg + 3, arg + narg);
   auto found = read_materials(lmp, arg[2], names,
                               avec ? avec->materials : std::map<std::string, std::string>());

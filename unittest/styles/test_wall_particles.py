@@ -164,6 +164,22 @@ def test_acceleration_of_a_float_where_the_time_step_changes(tmp_path, after):
     close(last["p"][wall], p[wall], 1e-11)
 
 
+def test_no_acceleration_from_a_wall_of_long_ago(tmp_path):
+    """A wall that is given again in the last run's place knows its velocity; one that had the ID runs ago is a new one, as under any other ID."""
+    random = np.random.default_rng(3)
+    x = lattice((8, 9), DX)
+    kind = np.where(x[:, 1] < 4 * DX, 2, 1)
+    x[:, :2] += random.uniform(-0.15, 0.15, (len(x), 2)) * DX
+    rho = np.where(kind == 1, 1000.0 * (1 + random.uniform(-0.002, 0.008, len(x))), 0.0)
+    wall, found = "wall fsi/wall/particle slip yes guard 0", []
+    for k, name in enumerate(("walls", "fresh")):
+        text = deck("artificial/visc 0 0", "oil wall", "slip yes guard 0", f"fix push wall addforce 2 5 0\nfix m wall rigid single torque 1 off off off\n{shot()}run 2\n"
+                    f"unfix walls\nfix other {wall}\nrun 5\nunfix other\nfix {name} {wall}\nrun 1", dt=2e-4)
+        (folder := tmp_path / str(k)).mkdir()
+        found.append(dump.read(go(folder, text, data(x, kind, None, BOX2, rho)).folder / "atoms.dump")[-1]["p"])
+    assert np.array_equal(*found)
+
+
 def test_pressure_linear(tmp_path):
     """On the surface of a disc in a fluid whose pressure has a gradient: as in the fluid. A mean has the pressure of a place 1.3 dx outside."""
     n, radius = 40, 6 * DX
