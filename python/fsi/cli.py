@@ -209,7 +209,7 @@ def make_check(files, options):
     """fsi check DECK [NAME=VALUE ...]
 
     Reads the whole deck and sets every run up without a step: prints the effects that are on and the advice of the package. Then estimates CPU
-    time and memory by some steps of each run. NAME=VALUE as for lmp -var. Nothing in the folder is overwritten: the deck runs in a copy of what it names. Status 1 if there is advice or an error.
+    time and memory by some steps of each run. NAME=VALUE, or -var NAME VALUE as for lmp. Nothing in the folder is overwritten: the deck runs in a copy of what it names. Status 1 if there is advice or an error.
     """
     sys.exit(check.main(files[0], options))
 
@@ -278,6 +278,9 @@ def main(arguments=None):
     if "-h" in words or "--help" in words:
         print(function.__doc__)
         return None
+    while name == "check" and "-var" in words[:-2]:  # as lmp is given them
+        k = words.index("-var")
+        words[k : k + 3] = ["=".join(words[k + 1 : k + 3])]
     files, options = [], {}
     for word in words:
         key, equals, value = word.partition("=")

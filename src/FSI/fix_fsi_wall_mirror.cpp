@@ -207,9 +207,10 @@ void FixFSIWallMirror::post_integrate()
   turns.clear();
 
   const InnerBox inner(walls, near);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (inner.contains(x[i]) || !(mask[i] & groupbit) || disc->state[type[i]].species != FLUID)
-      continue;
+  const auto outside = step->those(atom->nlocal, [&](int i) {
+    return !inner.contains(x[i]) && (mask[i] & groupbit) && disc->state[type[i]].species == FLUID;
+  });
+  for (const int i : outside) {
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
       if (a >= near || (w.finite && !w.spans(x[i], 0.0))) continue;

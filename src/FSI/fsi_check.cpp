@@ -349,17 +349,18 @@ void Check::look(bool closely, double kick)
                       *const rho = atom->rho;
   if (closely) lightest = *std::min_element(atom->rmass, atom->rmass + n);
   const double force = kick > 0.0 ? std::min(OFF, calm_kick * lightest / kick) : OFF;
-  for (int i = 0; i < n; i += BLOCK) {
-    const int m = std::min(BLOCK, n - i);
-    bool calm = all_below(3 * m, f + 3 * i, force);
-    if (closely && calm)
-      calm = all_below(3 * m, v + 3 * i, calm_speed) && all_below(3 * m, x + 3 * i, OFF) &&
+  const auto wild = step.those((n + BLOCK - 1) / BLOCK, [=](int block) {
+    const int i = BLOCK * block, m = std::min(BLOCK, n - i);
+    const bool calm = all_below(3 * m, f + 3 * i, force) &&
+        (!closely ||
+         (all_below(3 * m, v + 3 * i, calm_speed) && all_below(3 * m, x + 3 * i, OFF) &&
           std::all_of(rho + i, rho + i + m, [](double r) {
-               return r > 0.0 && r < OFF;
-             });
-    if (!calm)
-      for (int k = i; k < i + m; k++) examine(k, kick);
-  }
+            return r > 0.0 && r < OFF;
+          })));
+    return !calm;
+  });
+  for (const int block : wild)
+    for (int i = BLOCK * block; i < std::min(n, BLOCK * (block + 1)); i++) examine(i, kick);
   inside_out();
   if (closely && !(warned_dense && warned_soft)) look_at_densities();
 }
@@ -370,20 +371,33 @@ void Check::look(bool closely, double kick)
 void Check::look_at_densities()
 {
   const double *const rho = atom->rho;
-  densest = {};
   std::fill(deviations.begin(), deviations.end(), 0.0);
   double most = 1.0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const int t = atom->type[i];
-    if (dense[t] == OFF) continue;
-    const double beyond = rho[i] * (COMPRESSED / dense[t]) - 1.0;
-    // torn fluid without tension has any density
-    if (beyond > 0.0 || disc.state[t].floor < 0.0) deviations[2 * t] += beyond * beyond;
-    deviations[2 * t + 1] += 1.0;
-    if (rho[i] <= most * dense[t]) continue;
-    most = rho[i] / dense[t];
-    densest = stop.finding(DENSITY, i, rho[i]);
-  }
+  int at = -1;
+  std::mutex one_at_a_time;
+  step.in_parts(atom->nlocal, [&](int first, int last) {
+    std::vector<double> sums(deviations.size(), 0.0);
+    double most_here = 1.0;
+    int at_here = -1;
+    for (int i = first; i < last; i++) {
+      const int t = atom->type[i];
+      if (dense[t] == OFF) continue;
+      const double beyond = rho[i] * (COMPRESSED / dense[t]) - 1.0;
+      // torn fluid without tension has any density
+      if (beyond > 0.0 || disc.state[t].floor < 0.0) sums[2 * t] += beyond * beyond;
+      sums[2 * t + 1] += 1.0;
+      if (rho[i] <= most_here * dense[t]) continue;
+      most_here = rho[i] / dense[t];
+      at_here = i;
+    }
+    const std::lock_guard<std::mutex> guard(one_at_a_time);
+    for (size_t k = 0; k < sums.size(); k++) deviations[k] += sums[k];
+    if (at_here < 0 || most_here < most || (most_here == most && at >= 0 && at < at_here)) return;
+    most = most_here;
+    at = at_here;
+  });
+  densest = {};
+  if (at >= 0) densest = stop.finding(DENSITY, at, rho[at]);
 }
 
 bool Check::any_soft() const

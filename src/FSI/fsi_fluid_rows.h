@@ -353,7 +353,7 @@ namespace FSI {
    public:
     explicit FluidLoopsOf(const K &kernel_in) : kernel(kernel_in) {}
 
-    void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
+    void rates(PairKind kind, const RowSpan rows, const Mirror *image,
                const FluidParticles &in, const RateLaws &laws, double *rate, double *shift,
                PairSums *sums, std::vector<Row> *near) const override
     {
@@ -365,12 +365,12 @@ namespace FSI {
           flags_of_rates(kind, image, in, laws, shift, sums), rows, "rates", Flag::RatesTable(),
           [&](auto number, auto kind_is, auto flags) FSI_INLINE_LAMBDA {
             rate_rows<decltype(number), K, kind_is(), flags()>(
-                rows.data(), rows.size(), mirror, kernel, in, laws, rate,
+                rows.first, rows.size(), mirror, kernel, in, laws, rate,
                 reinterpret_cast<double(*)[shift_row<D>(flags())]>(shift), sums, near);
           });
     }
 
-    void forces(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
+    void forces(PairKind kind, const RowSpan rows, const Mirror *image,
                 const FluidParticles &in, const ForceLaws &laws, double *force, double *total,
                 PairSums *sums) const override
     {
@@ -386,12 +386,12 @@ namespace FSI {
       if (!sums && counted) sums = &unused;
       run(kind, flags_of_forces(image, unequal, in, laws, sums), rows, "forces",
           Flag::ForcesTable(), [&](auto number, auto kind_is, auto flags) FSI_INLINE_LAMBDA {
-            force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror,
+            force_rows<decltype(number), K, kind_is(), flags()>(rows.first, rows.size(), mirror,
                                                                 kernel, in, laws, f, total, sums);
           });
     }
 
-    void shifts(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
+    void shifts(PairKind kind, const RowSpan rows, const Mirror *image,
                 const FluidParticles &in, double wdx, double *shift) const override
     {
       const Mirror mirror = image ? *image : Mirror();
@@ -400,18 +400,18 @@ namespace FSI {
           (image ? Flag::IMAGES : 0) | (fluid ? Flag::BOTH : 0) | partly(in), rows, "shifts",
           Flag::ShiftsTable(), [&](auto number, auto, auto flags) FSI_INLINE_LAMBDA {
             shift_rows<decltype(number), K, flags()>(
-                rows.data(), rows.size(), mirror, kernel, in, wdx,
+                rows.first, rows.size(), mirror, kernel, in, wdx,
                 reinterpret_cast<double(*)[shift_row<D>(Flag::EDGES)]>(shift));
           });
     }
 
-    void number_density(PairKind kind, const std::vector<Row> &rows, bool both, const Mirror *image,
+    void number_density(PairKind kind, const RowSpan rows, bool both, const Mirror *image,
                         const FluidParticles &in, const double (*x)[3], double *sum) const override
     {
       distances(unequal_or_cut(kind, in), rows, both, image, in, x, nullptr, sum);
     }
 
-    void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image,
+    void position_divergence(const RowSpan rows, bool both, const Mirror *image,
                              const FluidParticles &in, const double (*x)[3], const double *vol,
                              double *sum) const override
     {
@@ -421,10 +421,10 @@ namespace FSI {
    private:
     // calls loop(number, kind, flags) as compiled for these, an error if the table has no such row
     template <class Table, class Loop>
-    static void run(int kind, int named, const std::vector<Row> &rows, const char *what, Table,
+    static void run(int kind, int named, const RowSpan rows, const char *what, Table,
                     Loop loop)
     {
-      bool ran = rows.empty();
+      bool ran = rows.size() == 0;
       with_flags<Table::FLAGS>(named, [&](auto flags) {
         const auto with_kind = [&](auto kind_is) {
           if constexpr (is_compiled(Table::ROWS, kind_is(), flags(), ONE_BY_ONE)) {
@@ -484,7 +484,7 @@ namespace FSI {
       return in.cut && kind != WITH_FLUID ? Flag::UNEQUAL : unequal(kind, in);
     }
 
-    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image,
+    void distances(int what, const RowSpan rows, bool both, const Mirror *image,
                    const FluidParticles &in, const double (*x)[3], const double *vol,
                    double *sum) const
     {
@@ -492,7 +492,7 @@ namespace FSI {
       run(WITH_FLUID, what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0) | partly(in),
           rows, "distances", Flag::DistancesTable(),
           [&](auto number, auto, auto flags) FSI_INLINE_LAMBDA {
-            distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel,
+            distance_rows<decltype(number), K, flags()>(rows.first, rows.size(), mirror, kernel,
                                                         in, x, vol, sum);
           });
     }

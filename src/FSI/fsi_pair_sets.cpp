@@ -148,14 +148,12 @@ template <int D> void PairSets::find_reach(bool may_sort)
   const size_t size = may_sort ? (size_t) D * atom->nmax : 0;
   if (sorted_at.size() < size) sorted_at.resize(size);
   const auto *const old = reinterpret_cast<const double(*)[D]>(sorted_at.data());
-  double fastest = 0.0, farthest = 0.0;
-  for (int i = 0; i < nall; i++) {
+  const auto [fastest, farthest] = step->largest<2>(nall, [=](int i) {
     double vsq = 0.0, rsq = 0.0;
     for (int d = 0; d < D; d++) vsq += v[i][d] * v[i][d];
     for (int d = 0; may_sort && d < D; d++) rsq += (x[i][d] - old[i][d]) * (x[i][d] - old[i][d]);
-    fastest = std::max(fastest, vsq);
-    farthest = std::max(farthest, rsq);
-  }
+    return std::array<double, 2>{vsq, rsq};
+  });
   // what a pair comes nearer in a step
   const double nearer = 2.0 * update->dt * std::sqrt(fastest);
   double walls = 0.0;
@@ -167,8 +165,9 @@ template <int D> void PairSets::find_reach(bool may_sort)
   const double skin = neighbor->skin,
                steps = std::floor(0.35 * skin / std::max(nearer, 0.04 * skin) + 0.5);
   margin = 1.15 * (std::max(steps, 1.0) - 0.5) * nearer;
-  for (int i = 0; i < nall; i++)
-    for (int d = 0; d < D; d++) sorted_at[D * i + d] = x[i][d] - 0.5 * update->dt * v[i][d];
+  step->for_particles(nall, [=, dth = 0.5 * update->dt, to = sorted_at.data()](int i) {
+    for (int d = 0; d < D; d++) to[D * i + d] = x[i][d] - dth * v[i][d];
+  });
 }
 
 void PairSets::look_past_thin_bodies(double *backfill, double *backfill_weight)
@@ -408,16 +407,19 @@ void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *pl
   const int *const wmask = step->wmask, *const type = atom->type, n = walls.reflections.size();
   const auto *const x = vectors(atom->x);
   const bool finite = walls.finite(), hidden = set.what == PairSet::HIDDEN;
-  const double *part = set.visible.data();    // of a pair and its images it is the same
   RowList *const images = set.images.data();
   const Walls::Reflection *const reflections = walls.reflections.data();
   const Wall *const wall_of = step->walls.wall.data();
   const double reach = set.reach;
-  for (const Row &row : set.rows.rows) {
+  const Row *const rows = set.rows.rows.data();
+  const auto at_walls = step->those(set.rows.rows.size(), [=](int r) {
+    return wmask[rows[r].i] != 0;
+  });
+  for (const int r : at_walls) {
+    const Row &row = rows[r];
     const int i = row.i;
-    const double *const parts_of_row = part;
-    if (hidden) part += row.n;
-    if (!wmask[i]) continue;
+    // of a pair and its images it is the same
+    const double *const parts_of_row = hidden ? set.visible.data() + (row.j - rows->j) : nullptr;
     const bool of_own_type = set.what == PairSet::FLUIDS && i < atom->nlocal &&
         (row.n == 0 || type[row.j[0]] == type[i]);
     for (int k = 0; k < n; k++) {

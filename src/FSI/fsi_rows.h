@@ -34,6 +34,14 @@ namespace FSI {
     const int *j;
   };
 
+  // some rows, one behind the other, of a list that lives longer
+  struct RowSpan {
+    const Row *first, *last;
+    RowSpan(const Row *begin, const Row *end) : first(begin), last(end) {}
+    RowSpan(const std::vector<Row> &all) : first(all.data()), last(first + all.size()) {}
+    int size() const { return last - first; }
+  };
+
   // Rows and, where they are not those of LAMMPS' neighbor list, their neighbors.
   class RowList {
    public:

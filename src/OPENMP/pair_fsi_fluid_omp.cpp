@@ -17,7 +17,12 @@
 #include "fsi_pair_laws.h"
 #include "fsi_pair_sets.h"
 #include "fsi_rows_omp.h"
+#include "modify.h"
 #include "neighbor.h"
+
+#if __has_include("fix_omp.h")
+#include "fix_omp.h"
+#endif
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -35,8 +40,6 @@ void add(const PairSums &one, PairSums &all)
   for (int d = 0; d < 6; d++) all.virial[d] += one.virial[d];
 }
 
-using Rows = std::vector<Row>;
-
 // What rows add to, found in advance: looking at all neighbors takes a quarter of the time of a
 // loop. From the lowest to the highest local particle, and ghost, by blocks of particles that have
 // rows. Loops go over the rows of a set, a part of each, or images of these pairs.
@@ -45,20 +48,19 @@ class Reach {
   std::vector<std::array<Span, 2>> of_block;
 
  public:
-  void find(const Rows &rows, int nlocal, int nall)
+  // rows: in the order of their particles, those of a block in one thread
+  void find(const std::vector<Row> &rows, int nlocal, int nall, int nthreads)
   {
     of_block.assign(nall / BLOCK + 1, {NOTHING, NOTHING});
-    for (const Row &row : rows) {
-      Span here = NOTHING, ghosts = NOTHING;
-      const auto touch = [&](int j) {    // without branches
-        here.add({j < nlocal ? j : INT_MAX, j < nlocal ? j + 1 : 0});
-        ghosts.add({j < nlocal ? INT_MAX : j, j < nlocal ? 0 : j + 1});
-      };
-      touch(row.i);
-      for (int k = 0; k < row.n; k++) touch(row.j[k]);
-      of_block[row.i / BLOCK][0].add(here);
-      of_block[row.i / BLOCK][1].add(ghosts);
-    }
+    const size_t n = rows.size();
+    const auto first_of = [&](int k) {
+      size_t r = n * k / nthreads;
+      while (0 < r && r < n && rows[r].i / BLOCK == rows[r - 1].i / BLOCK) r++;
+      return r;
+    };
+    in_threads(nthreads, [&](int k) {
+      for (size_t r = first_of(k), end = first_of(k + 1); r < end; r++) find(rows[r], nlocal);
+    });
   }
   std::vector<Span> operator()(const Row *rows, const Row *end) const
   {
@@ -68,6 +70,20 @@ class Reach {
         found[k].add(of_block[rows->i / BLOCK][k]);
     return {found.begin(), found.end()};
   }
+
+ private:
+  void find(const Row &row, int nlocal)
+  {
+    Span here = NOTHING, ghosts = NOTHING;
+    const auto touch = [&](int j) {    // without branches
+      here.add({j < nlocal ? j : INT_MAX, j < nlocal ? j + 1 : 0});
+      ghosts.add({j < nlocal ? INT_MAX : j, j < nlocal ? 0 : j + 1});
+    };
+    touch(row.i);
+    for (int k = 0; k < row.n; k++) touch(row.j[k]);
+    of_block[row.i / BLOCK][0].add(here);
+    of_block[row.i / BLOCK][1].add(ghosts);
+  }
 };
 
 // the loops of the plain style, each thread over a part of the rows
@@ -76,7 +92,7 @@ class ThreadedLoops : public FluidLoops {
   RowThreads &threads;
   const Reach &reach;
   const int dim;
-  mutable std::vector<Rows> parts;
+  mutable std::vector<std::vector<Row>> close;    // near rows of all parts but the first
 
   int width_of_shift(bool fills) const
   {
@@ -85,14 +101,11 @@ class ThreadedLoops : public FluidLoops {
 
   // loop(k, rows of part k, to)
   template <size_t N, class Loop>
-  void run(const Rows &rows, const RowThreads::Sums (&sums)[N], Loop loop) const
+  void run(const RowSpan rows, const RowThreads::Sums (&sums)[N], Loop loop) const
   {
-    parts.resize(threads.most());
-    threads.run(rows.data(), rows.size(), false, reach, sums,
+    threads.run(rows.first, rows.size(), false, reach, sums,
                 [&](int k, int first, int last, double *const *to) {
-                  const bool all = last - first == (int) rows.size();
-                  if (!all) parts[k].assign(rows.begin() + first, rows.begin() + last);
-                  loop(k, all ? rows : parts[k], to);
+                  loop(k, RowSpan(rows.first + first, rows.first + last), to);
                 });
   }
 
@@ -103,30 +116,31 @@ class ThreadedLoops : public FluidLoops {
   }
 
   // the first part has the sums of the caller, as it has the arrays
-  void rates(PairKind kind, const Rows &rows, const Mirror *mirror, const FluidParticles &in,
+  void rates(PairKind kind, const RowSpan rows, const Mirror *mirror, const FluidParticles &in,
              const RateLaws &laws, double *rate, double *shift, PairSums *sums,
-             Rows *near) const override
+             std::vector<Row> *near) const override
   {
     std::vector<PairSums> powers(threads.most());
-    std::vector<Rows> close(threads.most());
+    close.resize(threads.most());
+    for (auto &of_part : close) of_part.clear();
     run(rows, {{rate, 1}, {shift, width_of_shift(laws.fills)}},
-        [&](int k, const Rows &part, double *const *to) {
+        [&](int k, const RowSpan part, double *const *to) {
           loops->rates(kind, part, mirror, in, laws, to[0], to[1], k && sums ? &powers[k] : sums,
                        k && near ? &close[k] : near);
         });
     for (const PairSums &one : powers)
       if (sums) add(one, *sums);
-    for (const Rows &one : close)
-      if (near) near->insert(near->end(), one.begin(), one.end());
+    for (const auto &of_part : close)
+      if (near) near->insert(near->end(), of_part.begin(), of_part.end());
   }
 
-  void forces(PairKind kind, const Rows &rows, const Mirror *mirror, const FluidParticles &in,
+  void forces(PairKind kind, const RowSpan rows, const Mirror *mirror, const FluidParticles &in,
               const ForceLaws &laws, double *force, double *total, PairSums *sums) const override
   {
     std::vector<PairSums> powers(threads.most());
     std::vector<std::array<double, 3>> totals(threads.most(), {0.0, 0.0, 0.0});
     run(rows, {{force, row_of_forces(dim)}, {mirror ? nullptr : laws.taken, row_of_points(dim)}},
-        [&](int k, const Rows &part, double *const *to) {
+        [&](int k, const RowSpan part, double *const *to) {
           ForceLaws own = laws;
           own.taken = to[1];
           loops->forces(kind, part, mirror, in, own, to[0], k ? totals[k].data() : total,
@@ -138,27 +152,27 @@ class ThreadedLoops : public FluidLoops {
       for (int d = 0; d < dim && total; d++) total[d] += one[d];
   }
 
-  void shifts(PairKind kind, const Rows &rows, const Mirror *mirror, const FluidParticles &in,
+  void shifts(PairKind kind, const RowSpan rows, const Mirror *mirror, const FluidParticles &in,
               double wdx, double *shift) const override
   {
-    run(rows, {{shift, width_of_shift(false)}}, [&](int, const Rows &part, double *const *to) {
+    run(rows, {{shift, width_of_shift(false)}}, [&](int, const RowSpan part, double *const *to) {
       loops->shifts(kind, part, mirror, in, wdx, to[0]);
     });
   }
 
-  void number_density(PairKind kind, const Rows &rows, bool both, const Mirror *mirror,
+  void number_density(PairKind kind, const RowSpan rows, bool both, const Mirror *mirror,
                       const FluidParticles &in, const double (*x)[3], double *sum) const override
   {
-    run(rows, {{sum, 1}}, [&](int, const Rows &part, double *const *to) {
+    run(rows, {{sum, 1}}, [&](int, const RowSpan part, double *const *to) {
       loops->number_density(kind, part, both, mirror, in, x, to[0]);
     });
   }
 
-  void position_divergence(const Rows &rows, bool both, const Mirror *mirror,
+  void position_divergence(const RowSpan rows, bool both, const Mirror *mirror,
                            const FluidParticles &in, const double (*x)[3], const double *vol,
                            double *sum) const override
   {
-    run(rows, {{sum, 1}}, [&](int, const Rows &part, double *const *to) {
+    run(rows, {{sum, 1}}, [&](int, const RowSpan part, double *const *to) {
       loops->position_divergence(part, both, mirror, in, x, vol, to[0]);
     });
   }
@@ -194,12 +208,23 @@ void PairFSIFluidOMP::init_style()
   };
 }
 
+// Fix omp, which comes first, did not see the request of the style beside others.
+void PairFSIFluidOMP::set_fields(Discretization &of_run)
+{
+  PairFSIFluid::set_fields(of_run);
+#if __has_include("fix_omp.h")
+  const auto *const fix = static_cast<FixOMP *>(modify->get_fix_by_id("package_omp"));
+  if (fix) neighbor->set_omp_neighbor(fix->get_neighbor());
+#endif
+}
+
 void PairFSIFluidOMP::begin_state(bool advance)
 {
   PairFSIFluid::begin_state(advance);
   if (neighbor->ago) return;
   for (size_t k = 0; k < pairs.sets.size(); k++)
-    members->of_sets[k].find(pairs.sets[k].rows.rows, atom->nlocal, atom->nlocal + atom->nghost);
+    members->of_sets[k].find(pairs.sets[k].rows.rows, atom->nlocal, atom->nlocal + atom->nghost,
+                             members->threads.most());
 }
 
 double PairFSIFluidOMP::memory_usage()

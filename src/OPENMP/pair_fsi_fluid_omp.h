@@ -32,6 +32,7 @@ class PairFSIFluidOMP : public PairFSIFluid {
   PairFSIFluidOMP(class LAMMPS *);
   ~PairFSIFluidOMP() override;
   void init_style() override;
+  void set_fields(FSI::Discretization &) override;
   void begin_state(bool) override;
   double memory_usage() override;
 };

@@ -68,10 +68,11 @@ def test_runs_to_a_time(folder, capsys):
     assert status == 0 and f"100 particles, to t = 0.3 in {0.3 / (0.5 * 0.015 / 20):.2g} steps or more; nothing to warn of" in text
 
 
-def test_advice(folder, capsys):
-    """A spacing that is not the lattice's; variables of the command line."""
+@pytest.mark.parametrize("words", (["n=30"], ["-var", "n", "30"]))
+def test_advice(words, folder, capsys):
+    """A spacing that is not the lattice's; variables of the command line, in LAMMPS' form, too."""
     (folder / "in.deck").write_text(DECK.replace("fsi ${dx} wendland", "fsi 0.02 wendland"))
-    status, text = says(capsys, "n=30")
+    status, text = says(capsys, *words)
     assert status == 1 and "WARNING: Fix fsi" in text and "30 steps; " in text and "nothing to warn" not in text
 
 
