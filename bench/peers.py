@@ -219,7 +219,7 @@ def main(arguments):
     rows = speeds(job.kept, packages, job.turns) + [
         channel(job.kept, job.turns),
         *ranks(job.kept, "100k particles", deck("water_fsi", {**WATER2D, "kernel": "wendland", "steps": 60}), job.turns),
-        *ranks(job.kept, "elastic gate, dx = 1 mm, to 0.1 s", bundled("elastic_gate", tend=0.1), job.turns), memory(job.kept)]
+        *ranks(job.kept, "elastic gate, dx = 1 mm, to 0.1 s", bundled("elastic_gate", tend=0.1, frames=25), job.turns), memory(job.kept)]
     draw(job.folder / "peers.png", rows)
     job.write(COLUMNS, rows, 5, page(rows))
     return 0

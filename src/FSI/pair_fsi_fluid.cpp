@@ -923,7 +923,9 @@ template <int D> void PairFSIFluid::compute_forces()
   // LAMMPS' own walls they do not count in the virial, and forces times positions would have them
   const bool tally_pairs = vflag_fdotr ? step->walls.any() : evflag != 0;
   const bool own_pressure = disc->surface_ratio > 0.0 || step->wall_stiffness;
-  const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
+  forces.resize((size_t) ROW * nall);
+  const FluidParticles particles = gather<D>(0.0, [&, none = forces.data()](int i, Point<D> &p) {
+    std::fill_n(none + ROW * i, ROW, 0.0);
     p.p = own_pressure ? pressure_of(i, atom, *disc, *step) : disc->state[type[i]].pressure(p.rho);
     p.pv2 = p.p * p.vol * p.vol;
   });
@@ -938,7 +940,6 @@ template <int D> void PairFSIFluid::compute_forces()
     laws.viscosity = nullptr;
   }
   PairSums sums, *const of_pairs = ledger->kept || tally_pairs ? &sums : nullptr;
-  forces.assign((size_t) ROW * nall, 0.0);
   double guarding[PairSet::NKINDS] = {};
   const auto loop = [&](const PairSet &set, const std::vector<Row> &rows,
                         const std::vector<double> &visible, const Mirror *mirror, double *total) {
