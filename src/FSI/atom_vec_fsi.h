@@ -55,9 +55,13 @@ class AtomVecFSI : virtual public AtomVec {
   // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds
   // of solids are still of its spacing and kernel
   std::unique_ptr<FSI::Record> of_fix_fsi;
-  // until the next run: what it, and walls of particles by their ID, had of each particle
-  // (Fields::pack_all)
-  std::map<std::string, std::vector<double>> of_fixes;
+  // until the next run: what it, and those of FixFields::hand_on() by their names, had of each
+  // particle (Fields::pack_all), and their record
+  struct Kept {
+    std::shared_ptr<const FSI::Record> record;
+    std::vector<double> rows;
+  };
+  std::map<std::string, Kept> of_fixes;
 
  private:
   double *rmass, *rho;

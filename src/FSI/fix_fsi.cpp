@@ -128,7 +128,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   auto *const atoms = AtomVecFSI::of(atom);
   if (!atoms->of_fix_fsi || !changes.any_mass()) return;
   goes_on(*atoms->of_fix_fsi, "in the last run");
-  fields.unpack_all(atoms->of_fixes[""]);
+  fields.unpack_all(atoms->of_fixes[""].rows);
 }
 // clang-format on
 
@@ -138,7 +138,7 @@ FixFSI::~FixFSI()
   if (parts.empty()) return;
   auto *const atoms = AtomVecFSI::of(atom);
   atoms->of_fix_fsi = std::make_unique<Record>(record(ledger.energy_out));
-  atoms->of_fixes[""] = fields.pack_all();
+  atoms->of_fixes[""].rows = fields.pack_all();
 }
 
 Record FixFSI::record(const double *account) const

@@ -86,9 +86,15 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   members->buffer.set_fields(fields);
   register_fields();
+  name = fmt::format("{} {} {} {:g} {:g}", style, id, face, end.position, given_length);
+  if (const auto record = take_over(name)) goes_on(*record);
 }
 
-FixFSIInlet::~FixFSIInlet() = default;
+// another one of this ID at this place goes on with it
+FixFSIInlet::~FixFSIInlet()
+{
+  if (filled) hand_on(name, record());
+}
 
 void FixFSIInlet::read_given(const std::string *velocity, const std::string &pressure,
                              const char *face)
@@ -333,7 +339,7 @@ double FixFSIInlet::compute_vector(int n)
   }
 }
 
-void FixFSIInlet::write_restart(FILE *fp)
+Record FixFSIInlet::record() const
 {
   const auto &[open, fit, buffer, absorber, fullness] = *members;
   using Numbers = std::vector<double>;
@@ -345,14 +351,27 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("fill", Numbers{fullness.now, fullness.mean, fullness.column});
   record.add("passed", Numbers{buffer.passed_in, buffer.passed_out, buffer.mass_in});
   record.add("mean", Numbers(end.sum, end.sum + OpenEnd::NSUM));
+  return record;
+}
+
+void FixFSIInlet::write_restart(FILE *fp)
+{
+  Record record = this->record();
   fields.write(record);
   record.write(fp);
 }
 
 void FixFSIInlet::restart(char *buf)
 {
-  auto &[open, fit, buffer, absorber, fullness] = *members;
   const Record record(lmp, style, buf);
+  goes_on(record);
+  of_file = true;
+  fields.read(record);
+}
+
+void FixFSIInlet::goes_on(const Record &record)
+{
+  auto &[open, fit, buffer, absorber, fullness] = *members;
   // a file of another version may lack some
   const auto take = [&](const char *key, const std::vector<double *> &to) {
     const auto numbers = record.has(key) ? record.numbers(key) : std::vector<double>();
@@ -361,7 +380,6 @@ void FixFSIInlet::restart(char *buf)
   double was_filled = 0.0, has_before = 0.0;
   take("filled", {&was_filled, &buffer.served});
   if (record.has("buffer")) made = record.numbers("buffer");
-  of_file = true;
   take("absorption", {&absorber.wave, &absorber.before, &has_before});
   take("gradient", {&absorber.gradient, &absorber.added, &absorber.area});
   take("fill", {&fullness.now, &fullness.mean, &fullness.column});
@@ -371,7 +389,6 @@ void FixFSIInlet::restart(char *buf)
   take("mean", sums);
   filled = was_filled != 0.0;
   absorber.has_before = has_before != 0.0;
-  fields.read(record);
 }
 
 double FixFSIInlet::memory_usage()

@@ -25,12 +25,14 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #include "fsi_part.h"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
   class NumberDensity;
   class OpenEnd;
+  class Record;
 }    // namespace FSI
 
 // An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure
@@ -65,6 +67,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   const std::unique_ptr<Members> members;
   FSI::OpenEnd &end;
   FSI::Keywords keywords;
+  std::string name;    // of what another one goes on with
   double given_length;
   bool driven = false;    // has an open end of the scene a given velocity?
   bool filled = false, warned_of_far = false;
@@ -77,6 +80,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   FSI::Ghosts *ghosts = nullptr;
   const FSI::NumberDensity *number_density = nullptr;
 
+  FSI::Record record() const;
+  void goes_on(const FSI::Record &);
   void read_given(const std::string *velocity, const std::string &pressure, const char *face);
   void check_made() const;
   void check_far();

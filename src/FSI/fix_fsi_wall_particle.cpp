@@ -62,16 +62,13 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   fields.set("velocity of the last step", Fields::RESTART, true, before, 4);
   register_fields();
-  Record record(lmp, "fix fsi/wall/particle");
-  fields.write(record);
-  fields.read(record);
-  fields.unpack_all(AtomVecFSI::of(atom)->of_fixes[id]);
+  take_over(id);
 }
 
 // another one of this ID goes on with it
 FixFSIWallParticle::~FixFSIWallParticle()
 {
-  AtomVecFSI::of(atom)->of_fixes[id] = fields.pack_all();
+  hand_on(id, Record(lmp, style));
 }
 
 void FixFSIWallParticle::init()

@@ -14,6 +14,7 @@
 #include "fsi_fields.h"
 
 #include "atom.h"
+#include "atom_vec_fsi.h"
 #include "comm.h"
 #include "error.h"
 #include "force.h"
@@ -297,6 +298,21 @@ void FixFields::register_fields()
     restarts = true;
     restart_peratom = 1;
   }
+}
+
+void FixFields::hand_on(const std::string &name, Record record)
+{
+  fields.write(record);
+  AtomVecFSI::of(atom)->of_fixes[name] = {std::make_shared<Record>(record), fields.pack_all()};
+}
+
+std::shared_ptr<const Record> FixFields::take_over(const std::string &name)
+{
+  const auto &kept = AtomVecFSI::of(atom)->of_fixes[name];
+  if (!kept.record) return nullptr;
+  fields.read(*kept.record);
+  fields.unpack_all(kept.rows);
+  return kept.record;
 }
 
 // LAMMPS books the fix that is being constructed, which stands behind all others. A field that is

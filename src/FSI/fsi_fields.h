@@ -20,6 +20,7 @@
 #include "fix.h"
 #include "fsi_material.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -164,6 +165,10 @@ namespace FSI {
     const Message *sent = nullptr;    // of the exchange that goes on, by LAMMPS
     // when those that last are set: in the constructor, and again whenever they may have changed
     void register_fields();
+    // for another fix of that name, until the next run: the record and all fields. To be called in
+    // the destructor; and in the constructor, when fields are registered: null if there is none
+    void hand_on(const std::string &name, Record);
+    std::shared_ptr<const Record> take_over(const std::string &name);
 
    private:
     friend class Ghosts;

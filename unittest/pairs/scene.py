@@ -328,15 +328,16 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         has, lines = self.has, []
         if has["gravity"]:
             lines.append(f"fix gravity {'all' if has['gravity'] is True else has['gravity']} gravity 9.81 vector <0.3> -1 0")
-        lines += self.walls()
-        if has["ends"]:
-            p0 = 500 if "background" in self.row else 0
-            lines.append(has["ends"].format(p0=p0, p1=p0 + 50))
+        lines += self.walls() + self.ends()
         lines.append(has["lines"].replace("{flat}", " force * on on off torque * off off on" if self.dim == 2 else "")
                      .replace("{still}", "NULL" if self.dim == 2 else "v_zero"))
         if has["refine"]:
             lines.append(f"fix refine water fsi/refine 6 types 1 5 {has['refine']}")
         return lines
+
+    def ends(self):
+        p0 = 500 if "background" in self.row else 0
+        return [self.has["ends"].format(p0=p0, p1=p0 + 50)] if self.has["ends"] else []
 
     def walls(self):
         has, lines = self.has, []
@@ -378,7 +379,7 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         steps = "" if given("moving particles", "driven particles", "adaptive step", "adaptive sub-steps") else "reset_timestep $(step+60) time $(time:%.17g)"
         walls = [] if given("moving mirror", "moving particles", "driven particles") else self.walls()
         return "\n".join(["", steps, "" if self.open else self.wider(), "velocity all set 0 0 0 sum yes units box", "displace_atoms all move 0 0 0 units box", "balance 1.1 shift xy 5 1.05",
-                          self.coeff, self.fsi, *walls, "region nowhere block -9 -8 -9 -8 INF INF units box", "delete_atoms region nowhere compress no", "run 0"])
+                          self.coeff, self.fsi, *walls, *self.ends(), "region nowhere block -9 -8 -9 -8 INF INF units box", "delete_atoms region nowhere compress no", "run 0"])
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)

@@ -61,8 +61,7 @@ def again(scene, name, text=None):
 # commands that are refused where their order is another one, or what they keep would begin anew: an error, or what begins anew
 ORDER = {("tank", "un", "fsi"): r"after fix fsi|cannot|requires"}
 KEEPS = {  # a state that begins anew where the fix does: the run is another one
-    ("tank", "move"): "the motion begins there", ("tank", "dt"): "the step grows anew", ("open", "inlet"): "the buffer's particles are the new fix's",
-    ("open", "outlet"): "likewise", ("levels", "inlet"): "likewise", ("levels", "outlet"): "likewise", ("updated", "stress"): "the stress is that of the fix", ("tank", "un", "spectrum"): ""}
+    ("tank", "move"): "the motion begins there", ("tank", "dt"): "the step grows anew", ("updated", "stress"): "the stress is that of the fix", ("tank", "un", "spectrum"): ""}
 SAME = [(scene, name, way) for scene, (commands, _) in SCENES.items() for name in commands if name not in ("make", "settings")
         for way in again(scene, name) if (scene, name) not in KEEPS]
 
