@@ -85,11 +85,8 @@ namespace FSI {
       if (near) near->push_back(sieve.close(row));    // of images the others are gone
       rate[i] += point[i].rho * constant.volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (is_cut(KIND, FLAGS))
-        if (in.cut && sums && (in.newton || i < in.nlocal))
-          sums->walls -= laws.pressure_over_density[i] * point[i].rho * constant.volume *
-              point[i].vol * point[i].vol *
-              coming_out<T, K, IMAGE>(near ? near->back() : row, mirror, kernel, in,
-                                      constant.sharper);
+        tally_coming_out<T, K, IMAGE>(near ? near->back() : row, mirror, kernel, in, laws, constant,
+                                      sums);
       if constexpr (SHIFTS) shift_of.close(shift[i]);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);

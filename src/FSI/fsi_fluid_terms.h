@@ -234,29 +234,6 @@ namespace FSI {
     }
   };
 
-  // sum_j W_ij d part_j/dt over solids that come out of walls. To rho_i they add m_i of it, and to
-  // the energy of i m_i p_i/rho_i^2 of that, which no force on them does. A loop of its own: with
-  // it the loop of all rows would cost 6 % more where there are none.
-  template <class T, class K, bool IMAGE>
-  FSI_INLINE double coming_out(const Row &row, const Mirror &mirror, const K &kernel,
-                               const FluidParticles &in, double sharper)
-  {
-    constexpr int D = K::DIM;
-    using L = Lanes<T>;
-    const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
-    const Particle<T, D> pi(point[row.i]);
-    T sum = 0.0;
-    for_neighbors<T, IMAGE>(row, [&](const int *j, const T &) FSI_INLINE_LAMBDA {
-      Particle<T, D> pj(point, j);
-      if (IMAGE) pj.reflect(mirror);
-      T x[D];
-      difference(pi.x, pj.x, x);
-      // of a place left over, i itself, the rate is 0
-      sum += kernel.sharper(root(product(x, x)), sharper) * L::read(in.cut->rate, j);
-    });
-    return L::sum(sum);
-  }
-
   // Diffusion acts within a fluid
   template <bool UNLIKE>
   FSI_INLINE DensityDiffusion diffusion_of(const FluidParticles &in, double delta, double h,
@@ -293,6 +270,33 @@ namespace FSI {
             UNEQUAL ? in.ratio[type_j].sharper : 0.0, backfill,
             UNLIKE ? 1.0 / in.ratio[type_j].volume : 1.0,
             UNEQUAL ? backfill * in.ratio[type_j].volume : 1.0};
+  }
+
+  // sum_j W_ij d part_j/dt over solids that come out of walls. To rho_i they add m_i of it, and to
+  // the energy of i m_i p_i/rho_i^2 of that, which no force on them does: it goes into the ledger.
+  // A loop of its own: with it the loop of all rows would cost 6 % more where there are none.
+  template <class T, class K, bool IMAGE>
+  FSI_INLINE void tally_coming_out(const Row &row, const Mirror &mirror, const K &kernel,
+                                   const FluidParticles &in, const RateLaws &laws,
+                                   const RateConstants &constant, PairSums *sums)
+  {
+    constexpr int D = K::DIM;
+    using L = Lanes<T>;
+    if (!in.cut || !sums || !(in.newton || row.i < in.nlocal)) return;
+    const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    const Point<D> &p = point[row.i];
+    const Particle<T, D> pi(p);
+    T sum = 0.0;
+    for_neighbors<T, IMAGE>(row, [&](const int *j, const T &) FSI_INLINE_LAMBDA {
+      Particle<T, D> pj(point, j);
+      if (IMAGE) pj.reflect(mirror);
+      T x[D];
+      difference(pi.x, pj.x, x);
+      // of a place left over, i itself, the rate is 0
+      sum += kernel.sharper(root(product(x, x)), constant.sharper) * L::read(in.cut->rate, j);
+    });
+    sums->walls -= laws.pressure_over_density[row.i] * p.rho * constant.volume * p.vol * p.vol *
+        L::sum(sum);
   }
 
   template <class T, class K, int KIND, int FLAGS, int D>
