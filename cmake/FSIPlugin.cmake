@@ -9,8 +9,9 @@ target_link_libraries(fsiplugin PRIVATE ${FSI_FFTW} ${OpenMP_CXX_LIBRARIES})
 if(APPLE)
   target_link_options(fsiplugin PRIVATE "LINKER:-undefined,dynamic_lookup")
 else()
-  # the atom style's code must stay when LAMMPS unloads the other styles
-  target_link_options(fsiplugin PRIVATE "LINKER:-z,nodelete")
+  # The atom style's code must stay when LAMMPS unloads the other styles. LAMMPS looks up one name.
+  file(CONFIGURE OUTPUT plugin.map CONTENT "{ global: lammpsplugin_init; local: *; };\n")
+  target_link_options(fsiplugin PRIVATE "LINKER:-z,nodelete" "LINKER:--gc-sections" "LINKER:--version-script,${CMAKE_CURRENT_BINARY_DIR}/plugin.map")
 endif()
 if(FSI_COVERAGE)
   target_link_options(fsiplugin PRIVATE --coverage)
