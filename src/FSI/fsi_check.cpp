@@ -84,8 +84,11 @@ void Check::before_init()
     error->all(FLERR, "Fix fsi does not support run_style respa");
   const bool fluid = facts_of_fluids(lmp).style;
   if (fluid)
-    for (const auto &fix : modify->get_fix_by_style("^deform"))
-      refuse(error, Refused::DEFORM, fix->id);
+    for (const auto *fix : modify->get_fix_list())
+      if (fix->box_change & ~(Fix::BOX_CHANGE_ANY | Fix::BOX_CHANGE_DOMAIN))
+        refuse(error, Refused::DEFORM, fix->id, fix->style);
+  if (neighbor->includegroup) refuse(error, Refused::INCLUDE);
+  if (utils::strmatch(force->pair_style, "^hybrid/scaled")) refuse(error, Refused::SCALED);
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < disc.largest_cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}",

@@ -149,17 +149,16 @@ namespace FSI {
     // sums; mirror: the rows' neighbors are images in it; shift, sums: or null; near: becomes the
     // rows of what is within laws.reach, which are the first of each row from then on, of images
     // its only ones; or null
-    virtual void rates(PairKind, RowSpan, const Mirror *mirror,
-                       const FluidParticles &, const RateLaws &, double *rate, double *shift,
-                       PairSums *sums, std::vector<Row> *near) const = 0;
+    virtual void rates(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &,
+                       const RateLaws &, double *rate, double *shift, PairSums *sums,
+                       std::vector<Row> *near) const = 0;
     // adds pressure, viscosity and what keeps fluid out of walls to force, rows of
     // row_of_forces(D); with mirror the sum of the forces on all particles to total[D]
-    virtual void forces(PairKind, RowSpan, const Mirror *mirror,
-                        const FluidParticles &, const ForceLaws &, double *force, double *total,
-                        PairSums *sums) const = 0;
+    virtual void forces(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &,
+                        const ForceLaws &, double *force, double *total, PairSums *sums) const = 0;
     // adds the sums of particle shifting alone, times -V_i, to rows of Shift<D>::row(false)
-    virtual void shifts(PairKind, RowSpan, const Mirror *mirror,
-                        const FluidParticles &, double wdx, double *shift) const = 0;
+    virtual void shifts(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &, double wdx,
+                        double *shift) const = 0;
     // adds W_ij, by the neighbors' share, to sum; of the neighbors only if both
     virtual void number_density(PairKind, RowSpan, bool both, const Mirror *mirror,
                                 const FluidParticles &, const double (*x)[3],

@@ -350,9 +350,9 @@ namespace FSI {
    public:
     explicit FluidLoopsOf(const K &kernel_in) : kernel(kernel_in) {}
 
-    void rates(PairKind kind, const RowSpan rows, const Mirror *image,
-               const FluidParticles &in, const RateLaws &laws, double *rate, double *shift,
-               PairSums *sums, std::vector<Row> *near) const override
+    void rates(PairKind kind, const RowSpan rows, const Mirror *image, const FluidParticles &in,
+               const RateLaws &laws, double *rate, double *shift, PairSums *sums,
+               std::vector<Row> *near) const override
     {
       if (near) near->clear();
       const Mirror mirror = image ? *image : Mirror();
@@ -367,9 +367,8 @@ namespace FSI {
           });
     }
 
-    void forces(PairKind kind, const RowSpan rows, const Mirror *image,
-                const FluidParticles &in, const ForceLaws &laws, double *force, double *total,
-                PairSums *sums) const override
+    void forces(PairKind kind, const RowSpan rows, const Mirror *image, const FluidParticles &in,
+                const ForceLaws &laws, double *force, double *total, PairSums *sums) const override
     {
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
@@ -388,8 +387,8 @@ namespace FSI {
           });
     }
 
-    void shifts(PairKind kind, const RowSpan rows, const Mirror *image,
-                const FluidParticles &in, double wdx, double *shift) const override
+    void shifts(PairKind kind, const RowSpan rows, const Mirror *image, const FluidParticles &in,
+                double wdx, double *shift) const override
     {
       const Mirror mirror = image ? *image : Mirror();
       const bool fluid = kind == WITH_FLUID;
@@ -418,8 +417,7 @@ namespace FSI {
    private:
     // calls loop(number, kind, flags) as compiled for these, an error if the table has no such row
     template <class Table, class Loop>
-    static void run(int kind, int named, const RowSpan rows, const char *what, Table,
-                    Loop loop)
+    static void run(int kind, int named, const RowSpan rows, const char *what, Table, Loop loop)
     {
       bool ran = rows.size() == 0;
       with_flags<Table::FLAGS>(named, [&](auto flags) {
@@ -489,8 +487,8 @@ namespace FSI {
       run(WITH_FLUID, what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0) | partly(in),
           rows, "distances", Flag::DistancesTable(),
           [&](auto number, auto, auto flags) FSI_INLINE_LAMBDA {
-            distance_rows<decltype(number), K, flags()>(rows.first, rows.size(), mirror, kernel,
-                                                        in, x, vol, sum);
+            distance_rows<decltype(number), K, flags()>(rows.first, rows.size(), mirror, kernel, in,
+                                                        x, vol, sum);
           });
     }
   };

@@ -295,8 +295,8 @@ namespace FSI {
       // of a place left over, i itself, the rate is 0
       sum += kernel.sharper(root(product(x, x)), constant.sharper) * L::read(in.cut->rate, j);
     });
-    sums->walls -= laws.pressure_over_density[row.i] * p.rho * constant.volume * p.vol * p.vol *
-        L::sum(sum);
+    sums->walls -=
+        laws.pressure_over_density[row.i] * p.rho * constant.volume * p.vol * p.vol * L::sum(sum);
   }
 
   template <class T, class K, int KIND, int FLAGS, int D>

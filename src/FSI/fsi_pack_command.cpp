@@ -40,6 +40,8 @@ static constexpr double BAND = 8.0, EDGE = 2.0, BESIDE = 0.5;
 static constexpr int ROUND = 20, ROUND_OF_LOOKS = 100;
 // As much of a body must be on its lattice
 static constexpr double COVERED = 0.98;
+// Packed particles have a residue (root of the mean square) of some 0.005, a cut lattice 0.1
+static constexpr double LOOSE = 0.05;
 // The residue is at rest if it has not fallen to this in so many sweeps; from one word to the next
 static constexpr double CALM = 0.99, SECONDS = 5.0;
 // a particle that stays and is nearer than this takes the place of one that fills a side
@@ -342,6 +344,11 @@ void FSIPack::pack(int steps)
         "  fsi/pack: {} steps; dx |sum V grad W| of {} particles within {:g} spacings of "
         "the surface: {:.3g} at most, {:.3g} rms\n",
         done, n, BAND - EDGE, residue[0], residue[1]);
+  if (comm->me == 0 && residue[1] > LOOSE)
+    error->warning(FLERR,
+                   "fsi/pack: the residue stays at {:.2g}: are there particles of another body in "
+                   "place of what is packed, or too few or too many?",
+                   residue[1]);
 }
 
 void FSIPack::command(int narg, char **arg)

@@ -37,9 +37,13 @@ namespace FSI {
 
     // fix fsi
     inline constexpr Refusal
-        DEFORM = {NOT_WITH, "A fluid", "fix {} (style deform)",
+        DEFORM = {NOT_WITH, "A fluid", "fix {} (style {})",
                   "the box would move particles, and their densities would not follow: move walls "
                   "instead"},
+        INCLUDE = {NOT_WITH, "Fix fsi", "neigh_modify include",
+                   "particles without neighbors have no pressure"},
+        SCALED = {NOT_WITH, "Fix fsi", "pair_style hybrid/scaled",
+                  "densities and sub-steps would not be scaled"},
         TRICLINIC = {NOT_WITH, "Fix fsi", "a triclinic box",
                      "images in walls are those of an orthogonal one"},
         SUBSTEPS = {REQUIRES, "Fix fsi substeps", "pair_style fsi/solid/tl",

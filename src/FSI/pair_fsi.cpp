@@ -21,6 +21,7 @@
 #include "fix_fsi_reference.h"
 #include "force.h"
 #include "fsi_find.h"
+#include "fsi_others.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
@@ -199,6 +200,13 @@ void PairFSI::init_style()
   if (handles(FLUID, FLUID)) fix_fsi->disc.resolve_levels(types_of_levels());
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) fix_fsi->disc.enter_state(t, make_state(material[t]));
+  // before fixes and computes ask for masses
+  const Others defaults(lmp, fix_fsi->disc);
+  const std::vector<State> &state = fix_fsi->disc.state;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int species = state[atom->type[i]].species;
+    if (species != NONE && handles(FLUID, FLUID) == (species != SOLID)) defaults.give_defaults(i);
+  }
   if (needs_neighbors())
     neighbor->add_request(this);
   else

@@ -247,7 +247,8 @@ void PairFSIFluid::check_effects(const Facts &of_solids) const
     bool so;
     const char *what, *why;
   } idle[] = {
-      {laminar && !viscous && eddies == 0.0, "laminar/visc", "no fluid has a viscosity"},
+      {laminar && !viscous && eddies == 0.0 && !by_preset("laminar/visc"), "laminar/visc",
+       "no fluid has a viscosity"},
       {extrapolate && !solids, "extrapolate", "there is no solid"},
       {extrapolate && solids && full, "extrapolate", "it is for couple wall"},
       {eddies > 0.0 && !laminar, "smagorinsky", "there is no laminar/visc"},
@@ -257,6 +258,11 @@ void PairFSIFluid::check_effects(const Facts &of_solids) const
   for (const auto &r : idle)
     if (r.so && comm->me == 0)
       error->warning(FLERR, "Pair style fsi/fluid {} has nothing to act on: {}", r.what, r.why);
+}
+
+bool PairFSIFluid::by_preset(const char *keyword) const
+{
+  return preset && strstr(PRESETS[preset - 1].keywords, keyword);
 }
 
 // chooses the loops for kernel, dimension and the effects that the script names
@@ -385,7 +391,7 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 
 void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
 {
-  if (shift_every > 1 && shifting == 0.0)
+  if (shift_every > 1 && shifting == 0.0 && !by_preset("shift/every"))
     nothing("Pair style fsi/fluid shift/every", "keyword shift is 0");
   if (all.fluids == 0) nothing("Pair style fsi/fluid" + named_effects(), "no particle is a fluid");
 }
@@ -679,9 +685,10 @@ template <int D> FluidParticles PairFSIFluid::gather_for_rates(double dth)
     // surfaces, has the density that its few neighbors leave: their exchange would empty the spray,
     // beyond zero, and take volume from the rest.
     p.p = p.pv2 = 0.0;
+    static constexpr double NONE = 1.0e-12;    // round-off of a fluid at rest without pressure
     if (delta == 0.0) return;
     const State &s = disc->state[type[i]];
-    p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
+    p.p = s.pressure(p.rho) - s.floor > NONE * s.rho0 * s.csq ? 1.0 : 0.0;
     p.pv2 = DensityDiffusion::hydrostatic(step->body_forces.of_type[type[i]].data(),
                                           p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });

@@ -116,6 +116,7 @@ class PairFSIFluid : public PairFSI {
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
+  bool by_preset(const char *keyword) const;    // has the preset set it?
   void check_effects(const FSI::Facts &of_solids) const;
   bool has_all_pairs() const;
   // local and ghost, gathered at the start of each loop

@@ -57,6 +57,8 @@ CASES = {
     "lattice units": ([("run 0", "velocity all set 2 0 0\nrun 0"), ("fix g all", "#")], None,
                       r"speed of sound 12.53 .* 6.3e\+02 times the speed 0.02 .*: velocity \.\.\. units box"),
     "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
+    "wide": ([("fsi 0.01", "fsi 0.0125"), ("4e-5", "5e-5"), ("water block 0 0.05 0 0.08", "water block 0 0.05 0 0.12")], None,
+             r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0125"),
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
     # a block of 2 x 2 on a lattice half a spacing aside, with all of it in the plate

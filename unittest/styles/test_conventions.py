@@ -71,3 +71,15 @@ def test_bonds():
         s.lmp.command("neighbor 0.06 bin")
         after = s.run(1).compute("b", columns=False)
         assert np.array_equal(after, (near & (left[:, None] == left[None])).sum(1))
+
+
+def test_masses_before_the_first_run(tmp_path):
+    """Computes and fixes of LAMMPS that ask for masses when they are set up have those of the package: a spring and a rigid body that stand before fix fsi, too."""
+    text = deck("-0.1 0.3 -0.1 0.3", DX, {"water": WATER, "stone": WALL}, "fix w wall fsi/wall/particle", made="group still type 1\nfix spring wall spring tether 100 0.05 -0.02 0 0\n"
+                "fix raft wall rigid single force * off off off torque * off off off", group="still", dt=1e-5, water="0 0.1 0 0.1", wall="0 0.1 -0.04 0")
+    text += "compute middle water com\ncompute size water gyration\nthermo_style custom step c_middle[1] c_middle[2] c_size f_spring[4]\nrun 0\n"
+    say = 'print "$(c_middle[1]:%.12g) $(c_middle[2]:%.12g) $(c_size:%.12g) $(f_spring[4]:%.12g)"\n'
+    output = run(tmp_path, text + say.replace('"$', '"found $')).output
+    found = np.array(re.search(r"^found (\S+) (\S+) (\S+) (\S+)$", output, re.M).groups(), float)
+    x = np.arange(0.005, 0.1, DX)
+    np.testing.assert_allclose(found, [x.mean(), x.mean(), np.sqrt(2 * x.var()), 0.0], rtol=1e-9, atol=1e-9)

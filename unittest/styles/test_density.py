@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from decks import deck
 from scenes import KERNELS, RUBBER, WATER, Kernel, Scene, close, cloud, dam_gate, differing, lattice, pairs, run, sum_over, watch
 
 ROUND_OFF = 1e-12    # sums of about 20 to 120 terms of one sign
@@ -115,6 +116,20 @@ def test_diffusion_needs_pressure_on_both_sides(n):
     assert np.abs(rate).max() > 100 and np.all(got[~wet] == 0)
     # particles at rest at the start of the step: what pressure moves them in it does not count yet
     close(got, rate, 1e-12)
+
+
+def test_diffusion_without_pressure_is_none(tmp_path):
+    """Water that begins without pressure beside a plate: the last bit of its density decides nothing, so a factor on all densities and moduli changes no motion."""
+    v = []
+    for factor in (1.0, 0.1, 10.0):
+        named = {"water": f"fluid rho {1000 * factor!r}", "rubber": f"solid rho {1100 * factor!r} young {1e5 * factor!r} poisson 0.3"}
+        text = deck("-0.05 0.45 -0.05 0.45", 0.01, named, "fix walls water fsi/wall/mirror xlo 0 xhi 0.4 ylo 0", "fix g all gravity 9.81 vector 0 -1 0",
+                    made="region low block INF INF INF 0.03 INF INF units box\ngroup low region low\ngroup root intersect low plate\ngroup moves subtract all root",
+                    group="moves", fluid="sound 20 density/diffusion 0.1", solid="artificial/visc 0.1 0 contact 2", dt=1e-4, skin=0.4, water="0 0.15 0 0.15", plate="0.15 0.19 0 0.12")
+        frame = run(tmp_path / str(factor), text + watch(every=20) + "run 20\n").frames()[-1]
+        v.append(np.stack([frame["vx"], frame["vy"]]))
+    for other in v[1:]:
+        assert np.abs(other - v[0]).max() < 1e-9 * np.abs(v[0]).max()
 
 
 @BOTH

@@ -110,6 +110,13 @@ def test_ranks(tmp_path, ranks):
         assert max(np.linalg.norm(b - x, axis=1).min() for x in a) < 1e-9 * DX
 
 
+@pytest.mark.parametrize("steps, loose", [("steps 1", True), ("", False)])
+def test_a_residue_that_stays_is_said(tmp_path, steps, loose):
+    """That of a cut lattice is 0.1."""
+    log = lammps(tmp_path, deck("region s", region=DISC, steps=steps)).output
+    assert ("fsi/pack: the residue stays at" in log) == loose == (residue(log)[1] > 0.05)
+
+
 def test_water_created_twice_goes_apart(tmp_path):
     """The kernel's gradient leaves two at one place there."""
     text = deck("region s", region=DISC).replace("group water", "create_atoms 1 single 0.075 0.025 0 units box\ngroup water")

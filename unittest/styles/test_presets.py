@@ -126,3 +126,10 @@ def test_dump_has_columns_of_these_names(tmp_path, dim):
     assert lines.count(f"ITEM: ATOMS {columns}") == 3    # at 0, 0.0005 and 0.001
     times = [float(after) for line, after in zip(lines, lines[1:]) if line == "ITEM: TIME"]
     np.testing.assert_allclose(times, [0, 0.0005, 0.001], rtol=0, atol=2e-5)    # the first step at or after each
+
+
+@pytest.mark.parametrize("words, said", [("preset stream 2 shift 0", False), ("preset closed 2", False), ("sound 20 laminar/visc", True), ("sound 20 shift/every 4", True)])
+def test_what_a_preset_sets_may_be_idle(tmp_path, words, said):
+    """Only keywords that the user typed are said to have nothing to act on."""
+    text = water(words, "fix sph all fsi 0.01" + (" quintic 1.0" if said else ""), named="clear")
+    assert ("nothing to act on" in state(tmp_path, text, materials_fsi=materials(clear="fluid rho 1000"))[1]) == said
