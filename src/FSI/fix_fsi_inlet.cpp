@@ -86,7 +86,7 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   members->buffer.set_fields(fields);
   register_fields();
-  name = fmt::format("{} {} {} {:g} {:g}", style, id, face, end.position, given_length);
+  name = fmt::format("{} {} {} {} {}", style, id, face, end.position, given_length);
   if (const auto record = take_over(name)) goes_on(*record);
 }
 
