@@ -373,34 +373,37 @@ void Check::look(bool closely, double kick)
 // sound that is too slow for the pressures. It goes on, but not without a word.
 void Check::look_at_densities()
 {
+  struct Look {
+    std::vector<double> sums;
+    double most = 1.0;
+    int at = -1;
+  };
   const double *const rho = atom->rho;
-  std::fill(deviations.begin(), deviations.end(), 0.0);
-  double most = 1.0;
-  int at = -1;
-  std::mutex one_at_a_time;
-  step.in_parts(atom->nlocal, [&](int first, int last) {
-    std::vector<double> sums(deviations.size(), 0.0);
-    double most_here = 1.0;
-    int at_here = -1;
+  const auto parts = step.in_parts(atom->nlocal, [&](int first, int last) {
+    Look here;
+    here.sums.assign(deviations.size(), 0.0);
     for (int i = first; i < last; i++) {
       const int t = atom->type[i];
       if (dense[t] == OFF) continue;
       const double beyond = rho[i] * (COMPRESSED / dense[t]) - 1.0;
       // torn fluid without tension has any density
-      if (beyond > 0.0 || disc.state[t].floor < 0.0) sums[2 * t] += beyond * beyond;
-      sums[2 * t + 1] += 1.0;
-      if (rho[i] <= most_here * dense[t]) continue;
-      most_here = rho[i] / dense[t];
-      at_here = i;
+      if (beyond > 0.0 || disc.state[t].floor < 0.0) here.sums[2 * t] += beyond * beyond;
+      here.sums[2 * t + 1] += 1.0;
+      if (rho[i] <= here.most * dense[t]) continue;
+      here.most = rho[i] / dense[t];
+      here.at = i;
     }
-    const std::lock_guard<std::mutex> guard(one_at_a_time);
-    for (size_t k = 0; k < sums.size(); k++) deviations[k] += sums[k];
-    if (at_here < 0 || most_here < most || (most_here == most && at >= 0 && at < at_here)) return;
-    most = most_here;
-    at = at_here;
+    return here;
   });
   densest = {};
-  if (at >= 0) densest = stop.finding(DENSITY, at, rho[at]);
+  std::fill(deviations.begin(), deviations.end(), 0.0);
+  double most = 1.0;
+  for (const auto &[first, part] : parts) {
+    for (size_t k = 0; k < deviations.size(); k++) deviations[k] += part.sums[k];
+    if (part.most <= most) continue;
+    most = part.most;
+    densest = stop.finding(DENSITY, part.at, rho[part.at]);
+  }
 }
 
 bool Check::any_soft() const

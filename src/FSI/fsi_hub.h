@@ -136,43 +136,48 @@ namespace FSI {
       const auto loop = [=](int first, int last) {
         for (int i = first; i < last; i++) each(i);
       };
-      in_parts(n, loop);
-    }
-    // loop(first, last) for parts of n particles, at once
-    template <class Loop> void in_parts(int n, const Loop &loop) const
-    {
       threads ? threads(n, loop) : loop(0, n);
+    }
+    // what of(first, last) finds in parts of n particles, at once: in their order
+    template <class Of> auto in_parts(int n, Of of) const
+    {
+      std::map<int, decltype(of(0, 0))> parts;    // by their first particle
+      std::mutex one_at_a_time;
+      const auto loop = [&](int first, int last) {
+        auto found = of(first, last);
+        const std::lock_guard<std::mutex> guard(one_at_a_time);
+        parts.emplace(first, std::move(found));
+      };
+      threads ? threads(n, loop) : loop(0, n);
+      return parts;
     }
     // largest of each of N numbers of i, for i below n; 0 at least
     template <size_t N, class Of> std::array<double, N> largest(int n, Of of) const
     {
-      std::array<double, N> all = {};
-      std::mutex one_at_a_time;
-      in_parts(n, [&](int first, int last) {
-        std::array<double, N> here = {};
-        for (int i = first; i < last; i++) {
-          const std::array<double, N> next = of(i);
-          for (size_t k = 0; k < N; k++) here[k] = std::max(here[k], next[k]);
-        }
-        const std::lock_guard<std::mutex> guard(one_at_a_time);
-        for (size_t k = 0; k < N; k++) all[k] = std::max(all[k], here[k]);
+      using Numbers = std::array<double, N>;
+      const auto raise = [](Numbers &to, const Numbers &by) {
+        for (size_t k = 0; k < N; k++) to[k] = std::max(to[k], by[k]);
+      };
+      const auto parts = in_parts(n, [=](int first, int last) {
+        Numbers here = {};
+        for (int i = first; i < last; i++) raise(here, of(i));
+        return here;
       });
+      Numbers all = {};
+      for (const auto &part : parts) raise(all, part.second);
       return all;
     }
     // those i below n for which choose(i), in order
     template <class Choose> std::vector<int> those(int n, Choose choose) const
     {
-      std::map<int, std::vector<int>> found;    // of parts, by their first particle
-      std::mutex one_at_a_time;
-      in_parts(n, [&](int first, int last) {
+      const auto parts = in_parts(n, [=](int first, int last) {
         std::vector<int> here;
         for (int i = first; i < last; i++)
           if (choose(i)) here.push_back(i);
-        const std::lock_guard<std::mutex> guard(one_at_a_time);
-        found[first].swap(here);
+        return here;
       });
       std::vector<int> all;
-      for (const auto &part : found) all.insert(all.end(), part.second.begin(), part.second.end());
+      for (const auto &part : parts) all.insert(all.end(), part.second.begin(), part.second.end());
       return all;
     }
     int substeps = 1;    // of total-Lagrangian solids: as given or chosen by fix fsi/dt
