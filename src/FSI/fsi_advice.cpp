@@ -148,8 +148,10 @@ int Census::kinds_of(int i, bool moved, bool streams, int bodies) const
     return is ? 1 << kind : 0;
   };
   int kinds = bit(fluids.style && acted_on(i, moved), ACTED_ON);
+  const bool sums = fluid(i) || (solid(i) && solids.style == Facts::OF_SOLIDS);
+  kinds |= bit(sums && excludes_neighbors(i), EXCLUDED);
   if (fluid(i))
-    kinds |= bit(true, FLUIDS) | bit(!moved, HELD_FLUID) | bit(excludes_neighbors(i), EXCLUDED) |
+    kinds |= bit(true, FLUIDS) | bit(!moved, HELD_FLUID) |
         bit(streams && moved && state(i).floor == 0.0 && !heavy, TEARING);
   if (solid(i))
     kinds |= bit(true, SOLIDS) | bit(solids.style, BODIES) | bit(moved || goes(i), GOING_BODIES) |
@@ -161,7 +163,7 @@ int Census::kinds_of(int i, bool moved, bool streams, int bodies) const
   return kinds;
 }
 
-// neigh_modify exclude takes from sums of fluid what is beside it
+// neigh_modify exclude takes from sums over neighbors what is beside it
 bool Census::excludes_neighbors(int i) const
 {
   const int t = atom->type[i], mask = atom->mask[i];
@@ -738,7 +740,7 @@ static constexpr struct {
      "all {0} particles of elastic bodies, the first of them atom {1}, are not in group {2} of fix "
      "{3}: they stay where they are"},
     {EXCLUDED, NKIND, NKIND,
-     "neigh_modify exclude hides neighbors from {0} fluid particles, the first of them atom {1}: "
+     "neigh_modify exclude hides neighbors from {0} particles, the first of them atom {1}: "
      "their sums over neighbors are wrong"},
     {TEARING, NKIND, NKIND,
      "a stream without tension opens holes where its pressure falls to 0, as behind a body: unless "

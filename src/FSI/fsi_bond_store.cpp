@@ -23,6 +23,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -244,10 +245,11 @@ void BondStore::resolve()
       const int j = of_i[k], bits = planes(i, k);
       if (j < 0)
         error->one(FLERR,
-                   "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them "
-                   "was lost, the solid blew up (try a shorter time step, more sub-steps), or it "
-                   "is stretched so far that comm_modify cutoff must be larger",
-                   tag[i], t, std::max(comm->cutghostuser, neighbor->cutneighmax));
+                   "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {} at step {}: one "
+                   "of them was lost, the solid blew up (try a shorter time step, more sub-steps), "
+                   "or it is stretched so far that comm_modify cutoff must be larger",
+                   tag[i], t, std::max(comm->cutghostuser, neighbor->cutneighmax),
+                   update->ntimestep);
       of_i[k] = bits ? images.find(j, bits) : j;
     }
     std::fill(of_i + n, of_i + whole_blocks(n), i);

@@ -181,6 +181,7 @@ static constexpr struct Tip {
   const char *effect, *text;
 } TIPS[] = {
     // clang-format off
+    {FINITE, NONE, START_ONLY, nullptr, "run 0 before velocity create, which needs masses"},
     {FINITE, NONE, ANY_TIME, nullptr, "a look at what pushes this particle"},
     {FINITE, SOLID, ANY_TIME, "hourglass", "hourglass"},
     {MACH, NONE, START_ONLY, nullptr,
@@ -246,7 +247,7 @@ std::string Stop::advice(const Finding &all, When when, const Neighbor &body) co
   if (too_near(body)) tips.emplace_back(keep_out(starts, body.species == SOLID));
   for (const Tip &tip : TIPS)
     if (tip.trouble == all.trouble && (tip.of == NONE || (tip.of == FLUID) == fluid) &&
-        (starts || !tip.start_only) && met(tip.effect))
+        (starts || update->ntimestep == 0 || !tip.start_only) && met(tip.effect))
       tips.emplace_back(tip.text);
   if (all.trouble != LOST && when != BEFORE && !(starts && all.trouble == DISTANCE)) {
     bool suspect;

@@ -65,7 +65,10 @@ CASES = {
     "inside": ([("run 0", "lattice sq 0.01 origin 0 0 0\nregion more block 0.055 0.075 0.025 0.045 INF INF units box\ncreate_atoms 1 region more\nrun 0")], None,
                r"4 fluid particles, the first of them atom 65, are inside a body or wall: fsi/displace"),
     "excluded": ([("run 0", "group plates type 2\nneigh_modify exclude group plates all\nrun 0")], None,
-                 r"neigh_modify exclude hides neighbors from 40 fluid particles, the first of them atom 1"),
+                 r"neigh_modify exclude hides neighbors from 40 particles, the first of them atom 1"),
+    "excluded solids": ([("fsi/solid/tl", "fsi/solid"), ("run 0", "fix stress all fsi/stress\ngroup plates type 2\n"
+                                                         "neigh_modify exclude group plates plates\nrun 0")], None,
+                        r"neigh_modify exclude hides neighbors from 24 particles, the first of them atom 41"),
     "around": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0.0045 0.0755"), ("water block 0 0.05", "water block INF INF"),
                 ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"), ("create_atoms 2 region plate", "")], None,
                r"atoms 1 and 8 are 0.1 spacings apart around the periodic box: make it a whole number of spacings long in x"),
