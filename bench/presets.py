@@ -7,7 +7,7 @@ from tool import as_csv
 from fsi import paths
 
 TABLE = paths.ROOT / "src/FSI/fsi_preset.h"
-ROW = r'\{"(\w+)", "([^"]+)", (true|false), (true|false),\s*"([^"]+)"\}'
+ROW = r'\{"(\w+)", "([^"]+)", (true|false), (true|false), (?:true|false),\s*"([^"]+)"\}'
 
 
 def table():

@@ -26,6 +26,7 @@
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_preset.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_rows.h"
@@ -45,6 +46,7 @@ using namespace FixConst;
 using namespace FSI;
 
 static constexpr double AUTO = -1.0;
+enum { AS_PRESET, MEAN, LINEAR };    // pressure
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr),
@@ -52,7 +54,7 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
-  keywords.key("pressure").choice(linear, 0, {"mean", "linear"});
+  keywords.key("pressure").choice(pressure, AS_PRESET, {"auto", "mean", "linear"});
   keywords.key("guard").number(guard, AUTO, Range::between(0.0, 1.0)).or_word("auto", AUTO);
   keywords.parse(narg - 3, arg + 3);
   scalar_flag = vector_flag = 1;
@@ -87,6 +89,11 @@ void FixFSIWallParticle::init()
                    "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has "
                    "no laminar/visc");
 
+  // A mean lacks what turns fluid along a curved wall, rho u^2/R over 1.3 dx. In a full vessel the
+  // fluid is then pressed into the wall, its density falls below that of its volume, and tension
+  // tears it off with the wall's energy: the more of it the longer shifting keeps it in order.
+  const auto *const preset = fluid->facts().preset;
+  linear = pressure == LINEAR || (pressure == AS_PRESET && preset && preset->full);
   movers = fixes_of<FixFSIMove>(lmp);
   const bool stiffness = disc->several_stiffnesses();
   const int dim = disc->dim;

@@ -53,7 +53,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  int slip, linear;    // linear: pressure is extrapolated with its gradient, not as a mean
+  int slip, pressure;    // how pressure is extrapolated
   void set_fields(FSI::Discretization &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at
                                             // which forces are computed
@@ -62,6 +62,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   FSI::Keywords keywords;
   double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0:
                    // as the fluid has tension or not
+  bool linear = false;    // extrapolates with the gradient, not a mean
   std::vector<class FixFSIMove *> movers;
   double **before;    // velocity at the last step, and whether there was one
   const FSI::Discretization *disc = nullptr;

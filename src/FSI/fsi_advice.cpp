@@ -27,6 +27,7 @@
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
+#include "fsi_preset.h"
 #include "fsi_sight.h"
 #include "group.h"
 #include "math_extra.h"
@@ -725,6 +726,17 @@ static void time_step(const Census &c)
                 dt, c.update->dt_default ? ", LAMMPS' default," : "", good / dt, good);
 }
 
+// Pressure that is large beside rho u^2 works against shifting at walls of particles
+static void pressed(const Census &c)
+{
+  const auto *const preset = c.fluids.preset;
+  if (preset && preset->full && c.fluids.shift_every > 0 && c.any(FALLING) &&
+      any_is(c.parts, &Facts::particle_walls))
+    c.warn("with gravity shifting at walls of particles feeds the fluid energy: leave fix gravity "
+           "out, which moves nothing in a vessel full of one fluid, or give preset {} shift 0",
+           preset->name);
+}
+
 // Particles that are counted: there are {0}, the first is {1}; {2} is the group of fix {3}. Said
 // where there are some of the kind `given`, and none of `but`; NKIND: in any case.
 // Flow behind a body draws: where no weight keeps the pressure above 0, water that cannot bear
@@ -776,6 +788,7 @@ static void advise(const Census &c)
     if (c.at_first()) {
       seen_through(c);
       shallow(c);
+      pressed(c);
       ends(c);
     }
   }

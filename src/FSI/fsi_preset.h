@@ -32,18 +32,19 @@ namespace FSI {
     const char *name, *scenes;
     bool quintic;       // in 2D; Wendland in 3D, where its smaller support saves half the time
     bool background;    // of rho U^2
+    bool full;          // the fluid fills a vessel: no surface, no stream
     const char *keywords;
   };
 
   static constexpr double SOUND_OVER_SPEED = 10.0;
   static constexpr Preset PRESETS[] = {
-      {"splash", "free surfaces and impacts", false, false,
+      {"splash", "free surfaces and impacts", false, false, false,
        "density/diffusion 0.1 artificial/visc 0.02 0"},
-      {"stream", "laminar flow past bodies, open or periodic", true, true,
+      {"stream", "laminar flow past bodies, open or periodic", true, true, false,
        "density/diffusion 0.1 laminar/visc tension yes shift 0.25 shift/every 4"},
-      {"closed", "vortices in a full box", true, false,
+      {"closed", "vortices in a full box", true, false, true,
        "density/diffusion 0.1 laminar/visc tension yes shift 0.5"},
-      {"waves", "small waves", true, false, "density/diffusion 0.1 laminar/visc/central"},
+      {"waves", "small waves", true, false, false, "density/diffusion 0.1 laminar/visc/central"},
   };
 
   // without a preset it is that of bodies and of splashes

@@ -165,7 +165,7 @@ CASES = [
      r"fix fsi/wall/particle w is also in the group of fix fsi"),
     ("wall fix keyword unknown", HYBRID, wall("fix w all fsi/wall/particle rough yes"), r"keyword rough: expected slip, pressure or guard"),
     ("wall fix value missing", HYBRID, wall("fix w all fsi/wall/particle guard"), r"fix fsi/wall/particle guard command: missing"),
-    ("wall pressure unknown", HYBRID, wall("fix w all fsi/wall/particle pressure flat"), r"pressure flat: expected mean or linear"),
+    ("wall pressure unknown", HYBRID, wall("fix w all fsi/wall/particle pressure flat"), r"pressure flat: expected auto, mean or linear"),
     ("wall guard large", HYBRID, wall("fix w all fsi/wall/particle guard 1.5"), r"guard 1\.5 must be between 0 and 1"),
     ("wall slip no logical", HYBRID, wall("fix w all fsi/wall/particle slip perhaps"), r"perhaps"),
     ("wall twice", re.compile(HYBRID.pattern + r"([\s\S]*)fix sph all([\s\S]*)\nrun 0"),

@@ -206,6 +206,61 @@ def test_pressure_linear(tmp_path):
     assert f"the mean error over the gradient times dx is {found.mean():.2f}, with *mean* {of_means.mean():.2f}" in page
 
 
+TURNS = """units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block -0.9 0.9 -0.9 0.9 -0.025 0.025
+create_box 2 box
+lattice sq 0.05 origin 0.5 0.5 0
+region all block -0.89 0.89 -0.89 0.89 INF INF units box
+region inside cylinder z 0 0 0.5 INF INF units box
+create_atoms 1 region all
+create_atoms 2 region all
+group water type 1
+group wall type 2
+fsi/material water fluid rho 1000
+fsi/material wall wall rho 1000
+pair_style fsi/fluid preset closed 1
+pair_coeff * * NULL water wall
+neighbor 0.02 bin
+fix sph water fsi 0.05 {kernel}
+fix walls wall fsi/wall/particle {wall}
+fsi/set all volume 0.0025
+fsi/pack water wall region inside
+variable u atom -2*y
+variable v atom 2*x
+velocity water set v_u v_v 0 units box
+variable p atom 2000*(x*x+y*y-0.125)
+fsi/set water pressure v_p
+compute p all fsi/atom p
+compute e all fsi/energy
+fix e all ave/time 1 1 10 c_e[1] file energy.txt
+dump d water custom 20 water.dump id type x y z c_p
+dump_modify d sort id time yes colname c_p p
+fix dt all fsi/dt 10 stop 0.6
+run 100000
+"""
+
+
+@pytest.mark.parametrize("kernel", ["quintic 1", "wendland 1.5"])
+def test_liquid_that_turns_in_a_packed_vessel(tmp_path, kernel):
+    """Without friction it turns on as a rigid body: its energy does not grow, and pressure falls by rho omega^2 R^2/2 to the middle. Walls
+    with the mean of its pressures let it in, its own falls, and it is torn off: energy grew to 2.3 times (quintic) that of the start."""
+    grown, slope = {}, {}
+    for wall in ("", "pressure mean"):
+        (folder := tmp_path / (wall or "auto")).mkdir()
+        run(folder, TURNS.format(kernel=kernel, wall=wall))
+        energy = np.loadtxt(folder / "energy.txt")[:, 1]
+        grown[wall] = energy.max() / energy[0] - 1
+        frames = dump.read(folder / "water.dump")
+        r2, p = (np.concatenate(of) for of in zip(*((f["x"]**2 + f["y"]**2, f["p"] - f["p"].mean()) for f in frames)))
+        slope[wall] = np.polyfit(r2, p, 1)[0] / 2000
+    print(f"{kernel}: energy has grown by {grown}, pressure over r^2 {slope}")
+    assert grown[""] < 0.002 and slope[""] == pytest.approx(1, abs=0.1)
+    assert grown["pressure mean"] > 0.2
+
+
 def test_no_guard_where_water_has_tension(tmp_path):
     """Water that has no free surface passes walls nearer than 0.9 dx, and a push would be noise: by default it feels the same forces as with guard 0."""
     x, kind = tank(6, 6)
