@@ -244,12 +244,12 @@ void BondStore::resolve()
       const tagint t = partner_tags(i)[k];
       const int j = of_i[k], bits = planes(i, k);
       if (j < 0)
-        error->one(FLERR,
-                   "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {} at step {}: one "
-                   "of them was lost, the solid blew up (try a shorter time step, more sub-steps), "
-                   "or it is stretched so far that comm_modify cutoff must be larger",
-                   tag[i], t, std::max(comm->cutghostuser, neighbor->cutneighmax),
-                   update->ntimestep);
+        error->one(
+            FLERR,
+            "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {} at step {}: one "
+            "of them was lost, the solid blew up (try a shorter time step, more sub-steps), "
+            "or it is stretched so far that comm_modify cutoff must be larger",
+            tag[i], t, std::max(comm->cutghostuser, neighbor->cutneighmax), update->ntimestep);
       of_i[k] = bits ? images.find(j, bits) : j;
     }
     std::fill(of_i + n, of_i + whole_blocks(n), i);
