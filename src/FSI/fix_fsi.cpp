@@ -302,7 +302,9 @@ void FixFSI::pre_exchange()
     if (neighbor->style) neighbor->setup_bins();
   }
   comm->exchange();
+  if (step.device) step.device->to_host();
   sort_by_place(atom, disc.dx);
+  if (step.device) step.device->from_host();
 }
 
 // paper eq. 15: drift to the middle of the step
@@ -316,7 +318,7 @@ void FixFSI::initial_integrate(int)
     next_reneighbor = update->ntimestep;
     domain->pbc();
   }
-  disc.dim == 2 ? drift<2>() : drift<3>();
+  drift();
 }
 
 // after fix rigid has moved its bodies
@@ -325,7 +327,12 @@ void FixFSI::post_integrate()
   if (clamps.any()) clamps.to_middle();
 }
 
-template <int D> void FixFSI::drift()
+void FixFSI::drift()
+{
+  disc.dim == 2 ? drift_in<2>() : drift_in<3>();
+}
+
+template <int D> void FixFSI::drift_in()
 {
   Vector *const x = vectors(atom->x), *const v = vectors(atom->v);
   const int *const mask = atom->mask;
@@ -345,10 +352,15 @@ void FixFSI::final_integrate()
   if (clamps.any()) clamps.take_step();
   ledger.set_tally(update->dt);
   for (auto *p : parts) p->react();
-  disc.dim == 2 ? kick<2>() : kick<3>();
+  kick();
 }
 
-template <int D> void FixFSI::kick()
+void FixFSI::kick()
+{
+  disc.dim == 2 ? kick_in<2>() : kick_in<3>();
+}
+
+template <int D> void FixFSI::kick_in()
 {
   Vector *const x = vectors(atom->x), *const v = vectors(atom->v), *const f = vectors(atom->f);
   const double *const rmass = atom->rmass;
@@ -385,7 +397,7 @@ void FixFSI::update_state(bool advance)
   if (step.walls.any()) {
     phase.next(Profile::WALLS);
     step.gather_walls(lmp);
-    step.find_near_walls(atom, disc);
+    find_near_walls();
   }
 
   phase.next(Profile::DENSITY);
@@ -395,8 +407,18 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) p->advance(advance);
   number_density.renew();
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
-  ghosts.send(forward);
+  send_state();
   for (auto *p : parts) p->end_state(advance);
+}
+
+void FixFSI::find_near_walls()
+{
+  step.find_near_walls(atom, disc);
+}
+
+void FixFSI::send_state()
+{
+  ghosts.send(forward);
 }
 
 void FixFSI::set_arrays(int i)
