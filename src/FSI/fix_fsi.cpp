@@ -29,6 +29,7 @@
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_motion.h"
 #include "fsi_number_density.h"
 #include "fsi_others.h"
 #include "fsi_part.h"
@@ -329,17 +330,7 @@ void FixFSI::post_integrate()
 
 void FixFSI::drift()
 {
-  disc.dim == 2 ? drift_in<2>() : drift_in<3>();
-}
-
-template <int D> void FixFSI::drift_in()
-{
-  Vector *const x = vectors(atom->x), *const v = vectors(atom->v);
-  const int *const mask = atom->mask;
-  step.for_particles(atom->nlocal, [=, bit = groupbit, dth = 0.5 * update->dt](int i) {
-    if (mask[i] & bit)
-      for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
-  });
+  FSI::drift(lmp, disc, step, groupbit);
 }
 
 // paper eqs. 17 and 18: kick, and drift to the end of the step
@@ -357,28 +348,8 @@ void FixFSI::final_integrate()
 
 void FixFSI::kick()
 {
-  disc.dim == 2 ? kick_in<2>() : kick_in<3>();
-}
-
-template <int D> void FixFSI::kick_in()
-{
-  Vector *const x = vectors(atom->x), *const v = vectors(atom->v), *const f = vectors(atom->f);
-  const double *const rmass = atom->rmass;
-  const int *const mask = atom->mask, *const type = atom->type;
-  const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
-  const State *const state = disc.state.data();
-  double *const *const shift = step.shifts ? step.shift : nullptr;
-  step.for_particles(atom->nlocal, [=, bit = groupbit, no_solids = step.substeps > 1](int i) {
-    if (!(mask[i] & bit) || (no_solids && state[type[i]].species == SOLID)) return;
-    const double dtfm = dtf / rmass[i];
-    for (int d = 0; d < D; d++) {
-      v[i][d] += dtfm * f[i][d];
-      x[i][d] += dth * v[i][d];
-    }
-    if (shift && state[type[i]].species == FLUID)
-      for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
-  });
-  members->others.turn(dt);
+  FSI::kick(lmp, disc, step, groupbit);
+  members->others.turn(update->dt);
 }
 
 // bring density and stress of local and ghost atoms to the time of the positions; not to advance,

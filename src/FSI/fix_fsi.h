@@ -105,8 +105,6 @@ class FixFSI : public FSI::FixFields {
   FSI::Message forward, back;
   bool fresh_start() const;
   void update_state(bool);
-  template <int D> void drift_in();
-  template <int D> void kick_in();
 
  protected:
   // loops over particles, which fix fsi/kk has on its device

@@ -122,7 +122,7 @@ namespace FSI {
   void choose_skin(LAMMPS *, double dx);
 
   // What fix fsi/kk has in the place of loops on the host.
-  struct Device {
+  struct OnDevice {
     virtual void to_host() = 0;      // all of the particles, for those that read it there
     virtual void from_host() = 0;    // what was changed there
     // Are the forces on this rank's particles below that and, looked at closely, components of
@@ -130,7 +130,7 @@ namespace FSI {
     virtual bool is_calm(bool closely, double force, double speed) = 0;
 
    protected:
-    ~Device() = default;
+    ~OnDevice() = default;
   };
 
   // Of one step.
@@ -140,7 +140,7 @@ namespace FSI {
 
     BodyForces body_forces;
     Profile *profile = nullptr;    // of fix fsi/report; null: there is none
-    Device *device = nullptr;      // of fix fsi/kk; null: all loops are on the host
+    OnDevice *device = nullptr;    // of fix fsi/kk; null: all loops are on the host
     // of an /omp style: calls loop(first, last) in threads, for parts of n particles; or null
     std::function<void(int n, const std::function<void(int, int)> &loop)> threads;
     // each(i) for i below n

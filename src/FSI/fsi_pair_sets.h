@@ -96,7 +96,7 @@ namespace FSI {
    private:
     const Discretization *disc = nullptr;
     StepState *step = nullptr;
-    void check() const;    // are the pairs here?
+    void check() const;                              // are the pairs here?
     std::vector<size_t> of_two_levels, of_hidden;    // the sets of two fluids
     std::vector<int> fluid_types, other_types;
     std::vector<char> is_fluid;    // by type

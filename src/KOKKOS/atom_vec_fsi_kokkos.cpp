@@ -29,8 +29,7 @@ using namespace LAMMPS_NS;
 // density.
 static constexpr uint64_t RHO_MASKS = DPDRHO_MASK | RADIUS_MASK;
 
-AtomVecFSIKokkos::AtomVecFSIKokkos(LAMMPS *lmp) :
-    AtomVec(lmp), AtomVecKokkos(lmp), AtomVecFSI(lmp)
+AtomVecFSIKokkos::AtomVecFSIKokkos(LAMMPS *lmp) : AtomVec(lmp), AtomVecKokkos(lmp), AtomVecFSI(lmp)
 {
 }
 
@@ -78,8 +77,7 @@ void AtomVecFSIKokkos::grow(int n)
   grow_pointers();
   atomKK->sync(Host, ALL_MASK);
 
-  for (int k = 0; k < atom->nextra_grow; k++)
-    modify->fix[atom->extra_grow[k]]->grow_arrays(nmax);
+  for (int k = 0; k < atom->nextra_grow; k++) modify->fix[atom->extra_grow[k]]->grow_arrays(nmax);
 }
 
 void AtomVecFSIKokkos::grow_pointers()

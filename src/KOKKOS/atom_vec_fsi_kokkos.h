@@ -14,7 +14,6 @@
 #ifdef ATOM_CLASS
 // clang-format off
 AtomStyle(fsi/kk,AtomVecFSIKokkos);
-AtomStyle(fsi/kk/device,AtomVecFSIKokkos);
 // clang-format on
 #else
 
