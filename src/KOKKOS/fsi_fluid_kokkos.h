@@ -164,6 +164,14 @@ namespace FSI {
     {
       return reinterpret_cast<const Point<D> *>(in.points);
     }
+    // lists have the skin's pairs, too; what is not a number is not far: it is to be seen
+    KOKKOS_FORCEINLINE_FUNCTION bool is_far(const Particle<double, D> &i,
+                                            const Particle<double, D> &j) const
+    {
+      double x[D];
+      difference(i.x, j.x, x);
+      return product(x, x) >= kernel.cutsq;
+    }
   };
 
   // Rates of density; sums: the power of diffusion
@@ -204,6 +212,7 @@ namespace FSI {
                                          double &by) const
     {
       const FluidParticles &in = this->in;
+      if (this->is_far(pi, pj)) return;
       const RateConstants constant = constants_of_rates<WITH_FLUID, WITH>(
           in, laws.delta, this->kernel.h, i, in.type[i], in.type[j]);
       RatePair<double, D> m;
@@ -242,15 +251,17 @@ namespace FSI {
       Powers<double> by;
       this->for_pairs(i, [&](int j) {
         double of_pair[D];
-        add<FLAGS>(artificial, viscous, i, pi, j, point[j], Mirror(), nullptr, of_pair,
-                   SUMS ? rubbing : nullptr, by);
+        if (!find<FLAGS>(artificial, viscous, i, pi, j, point[j], Mirror(), nullptr, of_pair,
+                         SUMS ? rubbing : nullptr, by))
+          return;
         for (int d = 0; d < D; d++) force[d] += of_pair[d];
       });
       this->for_images(i, point, [&](int j, const Mirror &mirror, int k) {
         double of_pair[D], down[D];
         const bool deep = is_below(laws, mirror, type, down);
-        add<FLAGS | Flag::IMAGES>(artificial, viscous, i, pi, j, point[j], mirror,
-                                  deep ? &down : nullptr, of_pair, nullptr, by);
+        if (!find<FLAGS | Flag::IMAGES>(artificial, viscous, i, pi, j, point[j], mirror,
+                                        deep ? &down : nullptr, of_pair, nullptr, by))
+          return;
         const Reflection &s = this->images.reflection[k];
         for (int d = 0; d < D; d++) {
           force[d] += of_pair[d];
@@ -267,19 +278,21 @@ namespace FSI {
     }
 
    private:
-    // down: gravity along hydrostatic walls, or null; rubbing: what friction adds up to, or null
+    // Of a pair that is not far. down: gravity along hydrostatic walls, or null; rubbing: what
+    // friction adds up to, or null
     template <int WITH>
-    KOKKOS_FORCEINLINE_FUNCTION void
-    add(const ArtificialViscosity &artificial, const LaminarViscosity<D> &viscous, int i,
-        const Particle<double, D> &pi, int j, const Point<D> &at_j, const Mirror &mirror,
-        const double (*down)[D], double (&force)[D], double *rubbing, Powers<double> &by) const
+    KOKKOS_FORCEINLINE_FUNCTION bool
+    find(const ArtificialViscosity &artificial, const LaminarViscosity<D> &viscous, int i,
+         const Particle<double, D> &pi, int j, const Point<D> &at_j, const Mirror &mirror,
+         const double (*down)[D], double (&force)[D], double *rubbing, Powers<double> &by) const
     {
       const FluidParticles &in = this->in;
-      const RowConstants constant =
-          constants_of_row<D, WITH_FLUID, WITH>(in, laws, i, in.type[i], in.type[j]);
       const Particle<double, D> original(at_j);
       Particle<double, D> pj(original);
       if (WITH & Flag::IMAGES) pj.reflect(mirror);
+      if (this->is_far(pi, pj)) return false;
+      const RowConstants constant =
+          constants_of_row<D, WITH_FLUID, WITH>(in, laws, i, in.type[i], in.type[j]);
       Between<double, D> m;
       relate<double, K, WITH_FLUID, WITH>(this->kernel, in, constant, i, pi, pj, &j, 1.0, m);
       m.share = 0.5;
@@ -293,6 +306,7 @@ namespace FSI {
                                       force, on_j, friction, by);
       if (SUMS) account<double, WITH_FLUID, WITH>(m, force, pj.v, coupled, by);
       for (int d = 0; d < D && rubbing; d++) rubbing[d] += friction[d];
+      return true;
     }
   };
 
