@@ -25,7 +25,7 @@ namespace FSI {
 
   // of a group: x by half a step
   void drift(LAMMPS *, const Discretization &, const StepState &, int groupbit);
-  // v by the forces, x by half a step, and both by shifting; solids with sub-steps have them already
+  // v by the forces, x by half a step, both by shifting; not of solids that took sub-steps
   void kick(LAMMPS *, const Discretization &, const StepState &, int groupbit);
 
 }    // namespace FSI
