@@ -1,5 +1,8 @@
 # The package's sources, compiled once, with the definitions and include folders of target lammps: for liblammps and the plugin.
 set(FSI_SOURCE_DIRS "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI" "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI-CLASSIC" "${CMAKE_CURRENT_SOURCE_DIR}/src/OPENMP")
+if(PKG_KOKKOS)    # in LAMMPS alone, not in the plugin: its options must be those of LAMMPS' own styles
+  list(APPEND FSI_SOURCE_DIRS "${CMAKE_CURRENT_SOURCE_DIR}/src/KOKKOS")
+endif()
 list(TRANSFORM FSI_SOURCE_DIRS APPEND "/*.cpp" OUTPUT_VARIABLE _patterns)
 file(GLOB FSI_SOURCES CONFIGURE_DEPENDS ${_patterns})
 add_library(fsi OBJECT ${FSI_SOURCES})

@@ -47,12 +47,17 @@ def pytest(arguments):
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadgroup", f"--junitxml={report}",
                    *arguments, *tests]
         status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(), check=False).returncode
-        passed = failed = 0
-        if report.exists():
-            for case in ElementTree.parse(report).iter("testcase"):
-                outcome = {child.tag for child in case}
-                failed += bool(outcome & {"failure", "error"})
-                passed += not outcome & {"failure", "error", "skipped"}
+        return outcomes(report, status)
+
+
+def outcomes(report, status):
+    """(passed, failed) of a report of pytest, which ended with that status"""
+    passed = failed = 0
+    if report.exists():
+        for case in ElementTree.parse(report).iter("testcase"):
+            outcome = {child.tag for child in case}
+            failed += bool(outcome & {"failure", "error"})
+            passed += not outcome & {"failure", "error", "skipped"}
     # 5: nothing was collected; anything else without a failed test is a fault of the runner
     if status not in (0, 5) and failed == 0:
         failed = 1
@@ -64,6 +69,17 @@ def other_builds():
     sys.path.insert(0, str(paths.ROOT / "unittest" / "tools"))
     import variants
     return variants.main([])
+
+
+def kokkos():
+    """(passed, failed) of the styles with suffix kk, in a LAMMPS with package KOKKOS (tools/kokkos); (0, 0) where none can be made."""
+    tool = str(paths.ROOT / "tools" / "kokkos")
+    if subprocess.run([tool, "--possible"], check=False).returncode:
+        return 0, 0
+    report = paths.ROOT / "build-kokkos" / "report.xml"  # which that system sees
+    report.unlink(missing_ok=True)
+    status = subprocess.run([tool, "--test", "-q", f"--junitxml={report}"], check=False).returncode
+    return outcomes(report, status)
 
 
 def quick():
@@ -83,7 +99,7 @@ def main(arguments):
         arguments = [*(a for a in arguments if a != "--quick"), *quick()]
     results = [googletest(), pytest(arguments)]
     if not arguments:
-        results += [other_builds(), coverage()]
+        results += [other_builds(), kokkos(), coverage()]
     passed, failed = (sum(column) for column in zip(*results))
     print(f"{passed} passed, {failed} failed", flush=True)
     return 0 if passed and not failed else 1

@@ -29,6 +29,7 @@
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_motion.h"
 #include "fsi_number_density.h"
 #include "fsi_others.h"
 #include "fsi_part.h"
@@ -302,7 +303,9 @@ void FixFSI::pre_exchange()
     if (neighbor->style) neighbor->setup_bins();
   }
   comm->exchange();
+  if (step.device) step.device->to_host();
   sort_by_place(atom, disc.dx);
+  if (step.device) step.device->from_host();
 }
 
 // paper eq. 15: drift to the middle of the step
@@ -316,7 +319,7 @@ void FixFSI::initial_integrate(int)
     next_reneighbor = update->ntimestep;
     domain->pbc();
   }
-  disc.dim == 2 ? drift<2>() : drift<3>();
+  drift();
 }
 
 // after fix rigid has moved its bodies
@@ -325,14 +328,9 @@ void FixFSI::post_integrate()
   if (clamps.any()) clamps.to_middle();
 }
 
-template <int D> void FixFSI::drift()
+void FixFSI::drift()
 {
-  Vector *const x = vectors(atom->x), *const v = vectors(atom->v);
-  const int *const mask = atom->mask;
-  step.for_particles(atom->nlocal, [=, bit = groupbit, dth = 0.5 * update->dt](int i) {
-    if (mask[i] & bit)
-      for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
-  });
+  FSI::drift(lmp, disc, step, groupbit);
 }
 
 // paper eqs. 17 and 18: kick, and drift to the end of the step
@@ -345,28 +343,13 @@ void FixFSI::final_integrate()
   if (clamps.any()) clamps.take_step();
   ledger.set_tally(update->dt);
   for (auto *p : parts) p->react();
-  disc.dim == 2 ? kick<2>() : kick<3>();
+  kick();
 }
 
-template <int D> void FixFSI::kick()
+void FixFSI::kick()
 {
-  Vector *const x = vectors(atom->x), *const v = vectors(atom->v), *const f = vectors(atom->f);
-  const double *const rmass = atom->rmass;
-  const int *const mask = atom->mask, *const type = atom->type;
-  const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
-  const State *const state = disc.state.data();
-  double *const *const shift = step.shifts ? step.shift : nullptr;
-  step.for_particles(atom->nlocal, [=, bit = groupbit, no_solids = step.substeps > 1](int i) {
-    if (!(mask[i] & bit) || (no_solids && state[type[i]].species == SOLID)) return;
-    const double dtfm = dtf / rmass[i];
-    for (int d = 0; d < D; d++) {
-      v[i][d] += dtfm * f[i][d];
-      x[i][d] += dth * v[i][d];
-    }
-    if (shift && state[type[i]].species == FLUID)
-      for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
-  });
-  members->others.turn(dt);
+  FSI::kick(lmp, disc, step, groupbit);
+  members->others.turn(update->dt);
 }
 
 // bring density and stress of local and ghost atoms to the time of the positions; not to advance,
@@ -385,7 +368,7 @@ void FixFSI::update_state(bool advance)
   if (step.walls.any()) {
     phase.next(Profile::WALLS);
     step.gather_walls(lmp);
-    step.find_near_walls(atom, disc);
+    find_near_walls();
   }
 
   phase.next(Profile::DENSITY);
@@ -395,8 +378,18 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) p->advance(advance);
   number_density.renew();
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
-  ghosts.send(forward);
+  send_state();
   for (auto *p : parts) p->end_state(advance);
+}
+
+void FixFSI::find_near_walls()
+{
+  step.find_near_walls(atom, disc);
+}
+
+void FixFSI::send_state()
+{
+  ghosts.send(forward);
 }
 
 void FixFSI::set_arrays(int i)

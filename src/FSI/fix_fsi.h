@@ -104,9 +104,14 @@ class FixFSI : public FSI::FixFields {
   // sums that pairs left on them
   FSI::Message forward, back;
   bool fresh_start() const;
-  template <int D> void drift();
-  template <int D> void kick();
   void update_state(bool);
+
+ protected:
+  // loops over particles, which fix fsi/kk has on its device
+  virtual void drift();
+  virtual void kick();
+  virtual void find_near_walls();
+  virtual void send_state();    // to ghosts
 };
 
 }    // namespace LAMMPS_NS

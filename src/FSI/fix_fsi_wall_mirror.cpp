@@ -192,6 +192,15 @@ void FixFSIWallMirror::setup(int)
   }
 }
 
+std::vector<int> FixFSIWallMirror::find_outside(const InnerBox &inner)
+{
+  const auto *const x = vectors(atom->x);
+  const int *const mask = atom->mask, *const type = atom->type;
+  return step->those(atom->nlocal, [&](int i) {
+    return !inner.contains(x[i]) && (mask[i] & groupbit) && disc->state[type[i]].species == FLUID;
+  });
+}
+
 // after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
 // behind the wall, is reflected. A segment acts on what has come through it in this step, not on
 // what flows behind it. The ledger has velocities of the middle of a step, half a kick on, of which
@@ -200,17 +209,12 @@ void FixFSIWallMirror::post_integrate()
 {
   const Phase phase(step->profile, Profile::WALLS);
   auto *const x = vectors(atom->x), *const v = vectors(atom->v);
-  const int *const mask = atom->mask, *const type = atom->type;
   const double dth = 0.5 * update->dt, near = guard * disc->dx;
 
   for (auto &w : walls) w.position += dth * w.velocity[w.axis];
   turns.clear();
 
-  const InnerBox inner(walls, near);
-  const auto outside = step->those(atom->nlocal, [&](int i) {
-    return !inner.contains(x[i]) && (mask[i] & groupbit) && disc->state[type[i]].species == FLUID;
-  });
-  for (const int i : outside) {
+  for (const int i : find_outside(InnerBox(walls, near))) {
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
       if (a >= near || (w.finite && !w.spans(x[i], 0.0))) continue;

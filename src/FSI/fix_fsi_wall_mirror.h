@@ -54,6 +54,11 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
   void go_back() override;
   void find_idle(const Census &, const Idle &) const override;
 
+ protected:
+  virtual std::vector<int> find_outside(const FSI::InnerBox &);    // local fluid particles
+  const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
+
  private:
   std::vector<double> start;    // positions in the command
   std::string settings(int) const, faces() const;
@@ -70,8 +75,6 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
     bool turned;    // the velocity, too
   };
   std::vector<Turn> turns;
-  const FSI::Discretization *disc = nullptr;
-  const FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
 };
 

@@ -104,7 +104,7 @@ struct Census : public Pointers {
   template <class... T> void warn(const char *format, const T &...values) const
   {
     if (comm->me == 0)
-      error->warning(FLERR, "Fix fsi: " + fmt::format(fmt::runtime(format), values...));
+      error->warning(FLERR, "Fix fsi: " + fmt::vformat(format, fmt::make_format_args(values...)));
   }
 };
 

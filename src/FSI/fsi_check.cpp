@@ -348,11 +348,14 @@ void Check::look(bool closely, double kick)
   const int n = atom->nlocal;
   found = {};
   if (n == 0) return;
+  if (closely && step.device) step.device->to_host();
   const double *const x = atom->x[0], *const v = atom->v[0], *const f = atom->f[0],
                       *const rho = atom->rho;
   if (closely) lightest = *std::min_element(atom->rmass, atom->rmass + n);
   const double force = kick > 0.0 ? std::min(OFF, calm_kick * lightest / kick) : OFF;
-  const auto wild = step.those((n + BLOCK - 1) / BLOCK, [=](int block) {
+  const bool all_calm = step.device && step.device->is_calm(closely, force, calm_speed);
+  if (step.device && !all_calm) step.device->to_host();
+  const auto wild = step.those(all_calm ? 0 : (n + BLOCK - 1) / BLOCK, [=](int block) {
     const int i = BLOCK * block, m = std::min(BLOCK, n - i);
     const bool calm = all_below(3 * m, f + 3 * i, force) &&
         (!closely ||

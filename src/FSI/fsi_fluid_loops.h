@@ -23,6 +23,7 @@
 #define LMP_FSI_FLUID_LOOPS_H
 
 #include "fsi_material.h"
+#include "fsi_pair_laws.h"
 #include "fsi_rows.h"
 #include "fsi_walls.h"
 
@@ -45,11 +46,54 @@ namespace FSI {
     // force loop: pressure, p V^2; rate loop: 1 where there is pressure, else 0, and the
     // hydrostatic part of the density
     double p, pv2;
+
+    // of an atom, where it is a time t later
+    FSI_INLINE void place(const double *atom_x, const double *atom_v, double t)
+    {
+      for (int d = 0; d < D; d++) {
+        v[d] = atom_v[d];
+        x[d] = atom_x[d] + t * v[d];
+      }
+    }
+    FSI_INLINE void fill(double density, double mass)
+    {
+      rho = density;
+      vol = mass / rho;
+    }
+    // what forces read
+    FSI_INLINE void press(double pressure)
+    {
+      p = pressure;
+      pv2 = p * vol * vol;
+    }
+    // What density diffusion reads; z: of the atom, in 2D. Diffusion smooths pressures, so both of
+    // a pair must have one. What has none, spray and surfaces, has the density that its few
+    // neighbors leave: their exchange would empty the spray, beyond zero, and take volume from the
+    // rest.
+    FSI_INLINE void diffuse(double delta, const State &s, const double *gravity, double z)
+    {
+      constexpr double NONE = 1.0e-12;    // round-off of a fluid at rest without pressure
+      p = pv2 = 0.0;
+      if (delta == 0.0) return;
+      const double at[3] = {x[0], x[1], D == 3 ? x[D - 1] : z};
+      p = s.pressure(rho) - s.floor > NONE * s.rho0 * s.csq ? 1.0 : 0.0;
+      pv2 = DensityDiffusion::hydrostatic(gravity, at, s.rho0 * s.inv_csq);
+    }
     std::array<double, 3> position(const double *atom_x) const
     {
       return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]};
     }
   };
+
+  // continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; rho >= m W(0), the density of an
+  // isolated particle: diffusion could make that of ejected spray negative. The rate becomes the
+  // one that was taken.
+  FSI_INLINE double next_density(double rho, double mass, double w0, double dt, double &rate)
+  {
+    const double next = rho + dt * rate, alone = mass * w0;
+    if (next < alone) rate = (alone - rho) / dt;    // what go_back() takes
+    return next < alone ? alone : next;
+  }
 
   // Powers that terms take from the particles of all pairs visited, and their virial xx yy zz xy xz
   // yz.
@@ -103,7 +147,7 @@ namespace FSI {
     // per particle: what is left of shifting's weight where it sees fluid of another spacing
     const double *fade = nullptr;
     // types of different spacing that are one fluid
-    bool is_one_fluid(int a, int b) const
+    FSI_INLINE bool is_one_fluid(int a, int b) const
     {
       return ratio[b].volume != 1.0 && state[a].rho0 == state[b].rho0 &&
           state[a].csq == state[b].csq;

@@ -31,11 +31,12 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 // Not where something else than particles moves relative to the places: walls, the box. Open ends
-// make and delete particles when lists are new, before these have gone half a skin.
+// make and delete particles when lists are new, before these have gone half a skin. Package KOKKOS
+// has its own places.
 void Frame::init()
 {
   left = 0.0;
-  allowed = neighbor->dist_check && !domain->box_change && !has_open_ends(lmp);
+  allowed = !lmp->kokkos && neighbor->dist_check && !domain->box_change && !has_open_ends(lmp);
   for (const auto &wall : walls.wall) allowed = allowed && wall.velocity[wall.axis] == 0.0;
 }
 

@@ -121,6 +121,18 @@ namespace FSI {
   // a skin of 0.4 spacings, in place of the one that LAMMPS has before any command neighbor
   void choose_skin(LAMMPS *, double dx);
 
+  // What fix fsi/kk has in the place of loops on the host.
+  struct OnDevice {
+    virtual void to_host() = 0;      // all of the particles, for those that read it there
+    virtual void from_host() = 0;    // what was changed there
+    // Are the forces on this rank's particles below that and, looked at closely, components of
+    // velocities below that, and all that a run needs finite?
+    virtual bool is_calm(bool closely, double force, double speed) = 0;
+
+   protected:
+    ~OnDevice() = default;
+  };
+
   // Of one step.
   struct StepState {
     StepState(LAMMPS *lmp, const std::vector<Part *> &parts) : body_forces(lmp), parts(parts) {}
@@ -128,6 +140,7 @@ namespace FSI {
 
     BodyForces body_forces;
     Profile *profile = nullptr;    // of fix fsi/report; null: there is none
+    OnDevice *device = nullptr;    // of fix fsi/kk; null: all loops are on the host
     // of an /omp style: calls loop(first, last) in threads, for parts of n particles; or null
     std::function<void(int n, const std::function<void(int, int)> &loop)> threads;
     // each(i) for i below n

@@ -79,7 +79,7 @@ namespace FSI {
 
     // square of the fastest waves: sound of a fluid, longitudinal waves of a solid, (K + 4G/3)/rho0
     double wave_speed_sq() const { return species == FLUID ? csq : csq + 4.0 / 3.0 * shear / rho0; }
-    double pressure(double rho) const
+    FSI_INLINE double pressure(double rho) const
     {
       double p;
       if (tait) {

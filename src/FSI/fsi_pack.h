@@ -31,9 +31,15 @@
 #include <cstring>
 #include <type_traits>
 
+// A source of package KOKKOS, which includes its headers first, has functions for a device; there
+// loops go pair by pair.
+#if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
+#define FSI_PACKS 0
+#define FSI_INLINE KOKKOS_FORCEINLINE_FUNCTION
+#define FSI_INLINE_LAMBDA
 // compilers with the front end of EDG (nvc++, icpc) call themselves GNU C without having its
 // vectors
-#if defined(__GNUC__) && (defined(__x86_64__) || defined(__aarch64__)) && !defined(__EDG__) && \
+#elif defined(__GNUC__) && (defined(__x86_64__) || defined(__aarch64__)) && !defined(__EDG__) && \
     !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
 #define FSI_PACKS 1
 #define FSI_INLINE inline __attribute__((always_inline))

@@ -14,6 +14,7 @@
 #include "fsi_pair_sets.h"
 
 #include "atom.h"
+#include "error.h"
 #include "force.h"
 #include "fsi_cells.h"
 #include "fsi_kernel.h"
@@ -126,6 +127,15 @@ double PairSets::memory_usage() const
     for (const auto &rows : set.images) bytes += rows.memory_usage();
   }
   return bytes;
+}
+
+void PairSets::check() const
+{
+  if (elsewhere)
+    error->all(FLERR,
+               "{} keeps its pairs on its device: what else is found from pairs of particles, as "
+               "number densities and shear rates, is not supported with it",
+               elsewhere);
 }
 
 void PairSets::begin_step()

@@ -59,6 +59,7 @@ namespace FSI {
     // when the levels of fluids are known; full: solids' stress crosses (couple full)
     void init(const Discretization &, StepState &, bool full);
     std::vector<PairSet> sets;
+    const char *elsewhere = nullptr;    // the style that has its pairs on a device: not here
     const PairSet &of(size_t level, int what) const
     {
       return sets[PairSet::OF_LEVEL * level + what];
@@ -95,6 +96,7 @@ namespace FSI {
    private:
     const Discretization *disc = nullptr;
     StepState *step = nullptr;
+    void check() const;                              // are the pairs here?
     std::vector<size_t> of_two_levels, of_hidden;    // the sets of two fluids
     std::vector<int> fluid_types, other_types;
     std::vector<char> is_fluid;    // by type
@@ -134,6 +136,7 @@ namespace FSI {
   template <class Loop>
   void PairSets::for_images(const Walls &walls, const double *places, Loop loop)
   {
+    check();
     if (!step->wmask || !walls.any()) return;
     // without extent of walls they are the same in all of a step's loops, but that of rates leaves
     // only what is within reach
@@ -148,6 +151,7 @@ namespace FSI {
 
   template <class Loop> void PairSets::for_all(const Walls &walls, const double *places, Loop loop)
   {
+    check();
     const Mirror *const none = nullptr;
     for (const auto &set : sets) loop(set, set.rows.rows, set.visible, none, 0);
     for_images(walls, places, [&](const PairSet &set, int k, const Mirror *mirror) {

@@ -280,6 +280,7 @@ void Stop::go_back()
     if (atom->mask[i] & disc.mover->groupbit)
       for (int d = 0; d < disc.dim; d++) atom->x[i][d] += back * atom->v[i][d];
   for (auto *p : parts) p->go_back();
+  if (step.device) step.device->from_host();
   update->ntimestep--;
 }
 
@@ -304,6 +305,7 @@ std::string Stop::write_state()
   atom->natoms = count_of(atom->nlocal, world);
   domain->pbc();
   domain->reset_box();
+  if (step.device) step.device->to_host();
   // what has left a fixed box since the last reneighboring would be missing when the file is read
   double outward[6], ends[6];
   for (int d = 0; d < 3; d++) {

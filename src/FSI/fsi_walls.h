@@ -25,6 +25,8 @@
 #ifndef LMP_FSI_WALLS_H
 #define LMP_FSI_WALLS_H
 
+#include "fsi_pack.h"
+
 #include <cmath>
 #include <vector>
 
@@ -42,14 +44,14 @@ namespace FSI {
     bool hydrostatic = false;         // are images as much deeper as they are lower?
     int joins = 0;                    // bit of the group whose solids go on in their images
 
-    double distance(const double *x) const { return side * (x[axis] - position); }
+    FSI_INLINE double distance(const double *x) const { return side * (x[axis] - position); }
     // part of the cell of a particle with spacing dx that is before a plane without end
     double before(const double *x, double dx) const
     {
       return finite ? 1.0 : std::fmin(std::fmax(0.5 + distance(x) / dx, 0.0), 1.0);
     }
     // inside the extent, widened by margin
-    bool spans(const double *x, double margin) const
+    FSI_INLINE bool spans(const double *x, double margin) const
     {
       if (!finite) return true;
       for (int b = 0; b < 3; b++)
@@ -74,7 +76,7 @@ namespace FSI {
         else
           hi[w.axis] = std::fmin(hi[w.axis], w.position - margin);
     }
-    bool contains(const double *x) const
+    FSI_INLINE bool contains(const double *x) const
     {
       return x[0] > lo[0] && x[0] < hi[0] && x[1] > lo[1] && x[1] < hi[1] && x[2] > lo[2] &&
           x[2] < hi[2];
@@ -83,13 +85,82 @@ namespace FSI {
 
   typedef double *WallForce;    // three components
 
+  struct Reflection {    // a set of up to three mutually perpendicular walls
+    int mask = 0, n = 0, w[3] = {};
+  };
+
+  // n walls side by side, for loops on any processor
+  struct WallRow {
+    const Wall *wall;
+    int n;
+
+    // bits of the walls that x is near enough to have images in; behind: so far may it be behind a
+    // plane without end
+    FSI_INLINE int near(const double *x, double cut, double behind) const
+    {
+      int mask = 0;
+      for (int k = 0; k < n; k++) {
+        const double a = wall[k].distance(x);
+        if (a >= (wall[k].finite ? 0.0 : -behind) && a < cut && wall[k].spans(x, cut))
+          mask |= 1 << k;
+      }
+      return mask;
+    }
+
+    // Does x_i see the image M x_j of x_j within the cutoff? rsq: |x_i - x_j|^2, which becomes
+    // |x_i - M x_j|^2; dx[3] = x_i - M x_j. The one rule of all that have images
+    FSI_INLINE bool sees(const Reflection &s, const double *xi, const double *xj, double cutsq,
+                         double &rsq, double *dx) const
+    {
+      double ai[3], aj[3];
+      for (int d = 0; d < 3; d++) dx[d] = xi[d] - xj[d];
+      for (int k = 0; k < s.n; k++) {
+        const Wall &w = wall[s.w[k]];
+        ai[k] = w.distance(xi);
+        aj[k] = w.distance(xj);
+        rsq += 4.0 * ai[k] * aj[k];
+        dx[w.axis] += 2.0 * w.side * aj[k];
+      }
+      return rsq < cutsq && passes(s, xi, dx, ai, aj);
+    }
+
+    // of a reflection the wall that has the force along that axis
+    FSI_INLINE int pushed(const Reflection &s, int axis) const
+    {
+      int w = s.w[0];
+      for (int k = 1; k < s.n; k++)
+        if (wall[s.w[k]].axis == axis) w = s.w[k];
+      return w;
+    }
+
+   private:
+    // does the line from x_i to the image cross every wall of the set inside its extent?
+    FSI_INLINE bool passes(const Reflection &s, const double *xi, const double *dx,
+                           const double *ai, const double *aj) const
+    {
+      for (int k = 0; k < s.n; k++) {
+        const Wall &w = wall[s.w[k]];
+        if (!w.finite) continue;
+        const double sum = ai[k] + aj[k], t = sum > 0.0 ? ai[k] / sum : 0.5;
+        double cross[3] = {xi[0] - t * dx[0], xi[1] - t * dx[1], xi[2] - t * dx[2]};
+        // behind another wall of the set the crossing point is itself an image: fold it back
+        for (int m = 0; m < s.n; m++) {
+          const Wall &u = wall[s.w[m]];
+          if (m == k) continue;
+          const double a = u.distance(cross);
+          if (a < 0.0) cross[u.axis] -= 2.0 * u.side * a;
+        }
+        if (!w.spans(cross, 0.0)) return false;
+      }
+      return true;
+    }
+  };
+
   struct Walls {
     static constexpr int MAXWALL = 31;
     std::vector<Wall> wall;
 
-    struct Reflection {    // a set of up to three mutually perpendicular walls
-      int mask = 0, n = 0, w[3] = {};
-    };
+    using Reflection = FSI::Reflection;
     std::vector<Reflection> reflections;
 
     bool any() const { return !wall.empty(); }
@@ -130,18 +201,10 @@ namespace FSI {
       }
     }
 
-    // bits of the walls that x is near enough to have images in; behind: so far may it be behind a
-    // plane without end
+    // as WallRow has them
     int near(const double *x, double cut, double behind = 0.0) const
     {
-      int mask = 0;
-      const int n = wall.size();
-      for (int k = 0; k < n; k++) {
-        const double a = wall[k].distance(x);
-        if (a >= (wall[k].finite ? 0.0 : -behind) && a < cut && wall[k].spans(x, cut))
-          mask |= 1 << k;
-      }
-      return mask;
+      return row().near(x, cut, behind);
     }
 
     // To the fluid a body that passes through a plane without end goes on in its images: what is
@@ -174,21 +237,10 @@ namespace FSI {
       return part;
     }
 
-    // Does x_i see the image M x_j of x_j within the cutoff? rsq: |x_i - x_j|^2, which becomes
-    // |x_i - M x_j|^2; dx[3] = x_i - M x_j. The one rule of all that have images
     bool sees(const Reflection &s, const double *xi, const double *xj, double cutsq, double &rsq,
               double *dx) const
     {
-      double ai[3], aj[3];
-      for (int d = 0; d < 3; d++) dx[d] = xi[d] - xj[d];
-      for (int k = 0; k < s.n; k++) {
-        const Wall &w = wall[s.w[k]];
-        ai[k] = w.distance(xi);
-        aj[k] = w.distance(xj);
-        rsq += 4.0 * ai[k] * aj[k];
-        dx[w.axis] += 2.0 * w.side * aj[k];
-      }
-      return rsq < cutsq && passes(s, xi, dx, ai, aj);
+      return row().sees(s, xi, xj, cutsq, rsq, dx);
     }
 
     // Calls f(reflection, rsq, dx) for every image that x_i sees. mask: walls near both; rsq0 =
@@ -212,27 +264,7 @@ namespace FSI {
       return m;
     }
 
-   private:
-    // does the line from x_i to the image cross every wall of the set inside its extent?
-    bool passes(const Reflection &s, const double *xi, const double *dx, const double *ai,
-                const double *aj) const
-    {
-      for (int k = 0; k < s.n; k++) {
-        const Wall &w = wall[s.w[k]];
-        if (!w.finite) continue;
-        const double sum = ai[k] + aj[k], t = sum > 0.0 ? ai[k] / sum : 0.5;
-        double cross[3] = {xi[0] - t * dx[0], xi[1] - t * dx[1], xi[2] - t * dx[2]};
-        // behind another wall of the set the crossing point is itself an image: fold it back
-        for (int m = 0; m < s.n; m++) {
-          const Wall &u = wall[s.w[m]];
-          if (m == k) continue;
-          const double a = u.distance(cross);
-          if (a < 0.0) cross[u.axis] -= 2.0 * u.side * a;
-        }
-        if (!w.spans(cross, 0.0)) return false;
-      }
-      return true;
-    }
+    WallRow row() const { return {wall.data(), static_cast<int>(wall.size())}; }
   };
 
   // A reflection as what it makes of a point and its velocity, axis by axis: image = x + sign *

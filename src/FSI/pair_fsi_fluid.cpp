@@ -516,8 +516,6 @@ void PairFSIFluid::find_fades()
   ghosts->send(fade);
 }
 
-// continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; rho >= m W(0), the density of an
-// isolated particle: diffusion could make that of ejected spray negative
 void PairFSIFluid::advance_density()
 {
   double *const rho = atom->rho;
@@ -527,10 +525,7 @@ void PairFSIFluid::advance_density()
   double *const rates = rate;
   step->for_particles(atom->nlocal, [=](int i) {
     const State &s = state[type[i]];
-    if (s.species != FLUID) return;
-    const double next = rho[i] + dt * rates[i], alone = rmass[i] * s.w0;
-    if (next < alone) rates[i] = (alone - rho[i]) / dt;    // what go_back() takes
-    rho[i] = std::max(next, alone);
+    if (s.species == FLUID) rho[i] = next_density(rho[i], rmass[i], s.w0, dt, rates[i]);
   });
 }
 
@@ -660,12 +655,8 @@ template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, C
   const double *const rho = atom->rho, *const rmass = atom->rmass;
   step->for_particles(nall, [=](int i) {
     Point<D> &p = point[i];
-    for (int d = 0; d < D; d++) {
-      p.v[d] = v[i][d];
-      p.x[d] = x[i][d] + t * p.v[d];
-    }
-    p.rho = rho[i];
-    p.vol = rmass[i] / p.rho;
+    p.place(x[i], v[i], t);
+    p.fill(rho[i], rmass[i]);
     complete(i, p);
   });
   return particles_at(points.data());
@@ -682,16 +673,7 @@ template <int D> FluidParticles PairFSIFluid::gather_for_rates(double dth)
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
     if (by_shifting)
       for (int d = 0; d < D; d++) p.v[d] += by_shifting[d][i];
-    // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and
-    // surfaces, has the density that its few neighbors leave: their exchange would empty the spray,
-    // beyond zero, and take volume from the rest.
-    p.p = p.pv2 = 0.0;
-    static constexpr double NONE = 1.0e-12;    // round-off of a fluid at rest without pressure
-    if (delta == 0.0) return;
-    const State &s = disc->state[type[i]];
-    p.p = s.pressure(p.rho) - s.floor > NONE * s.rho0 * s.csq ? 1.0 : 0.0;
-    p.pv2 = DensityDiffusion::hydrostatic(step->body_forces.of_type[type[i]].data(),
-                                          p.position(x[i]).data(), s.rho0 * s.inv_csq);
+    p.diffuse(delta, disc->state[type[i]], step->body_forces.of_type[type[i]].data(), x[i][2]);
   });
   // the density of walls is that of the pressures in the last step or setup, which a restart does
   // not know
@@ -910,12 +892,7 @@ const Shear &PairFSIFluid::find_shear()
 template <int D>
 void PairFSIFluid::add_wall_forces(const Walls::Reflection &s, const double (&total)[D])
 {
-  for (int d = 0; d < D; d++) {
-    int w = s.w[0];
-    for (int k = 1; k < s.n; k++)
-      if (step->walls.wall[s.w[k]].axis == d) w = s.w[k];
-    step->add_wall_force(w, d, total[d]);
-  }
+  for (int d = 0; d < D; d++) step->add_wall_force(step->walls.row().pushed(s, d), d, total[d]);
 }
 
 // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14),
@@ -934,8 +911,8 @@ template <int D> void PairFSIFluid::compute_forces()
   forces.resize((size_t) ROW * nall);
   const FluidParticles particles = gather<D>(0.0, [&, none = forces.data()](int i, Point<D> &p) {
     std::fill_n(none + ROW * i, ROW, 0.0);
-    p.p = own_pressure ? pressure_of(i, atom, *disc, *step) : disc->state[type[i]].pressure(p.rho);
-    p.pv2 = p.p * p.vol * p.vol;
+    p.press(own_pressure ? pressure_of(i, atom, *disc, *step)
+                         : disc->state[type[i]].pressure(p.rho));
   });
 
   if (ledger->kept) taken.assign((size_t) row_of_points(D) * nall, 0.0);

@@ -96,7 +96,6 @@ class PairFSIFluid : public PairFSI {
   FSI::State make_state(const FSI::Material &) const override;
   FSI::PairSets &pairs;
 
- private:
   // settings
   int preset;                             // fsi_preset.h, from 1 on; 0: none
   double speed;                           // of the flow, for it

@@ -289,6 +289,11 @@ class Reader:
         text = self.execute("tools/setup --help")
         assert all(word.partition("=")[0] in text for word in words)
 
+    def tools_kokkos(self, _, words):
+        """What it does takes another system: it is run by hand."""
+        text = self.execute("tools/kokkos --help")
+        assert all(word in text for word in words if word.startswith("--"))
+
     def tools_lammps_tree(self, command, _):
         self.execute(f"{command}/tree --changes --lammps {shlex.quote(str(paths.lammps_source()))}")
 
@@ -300,8 +305,8 @@ class Reader:
 
 
 def cmake_variables():
-    """Names of all options that the build knows, LAMMPS' as well."""
-    return set(re.findall(r"^(\w+):", (paths.BUILD / "CMakeCache.txt").read_text(), re.M))
+    """Names of all options that the build knows, LAMMPS' as well; the last where it has package KOKKOS."""
+    return {*re.findall(r"^(\w+):", (paths.BUILD / "CMakeCache.txt").read_text(), re.M), "EXTERNAL_KOKKOS"}
 
 
 @pytest.mark.parametrize("commands", SESSIONS, ids=[f"{path}-{'; '.join(lines)[:60]}" for lines, path in SESSIONS.items()])

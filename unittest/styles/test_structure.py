@@ -119,7 +119,7 @@ def long_functions(text, most):
 
 
 def sources():
-    return [file for file in SOURCES.values() if file.suffix in (".h", ".cpp")]
+    return [file for file in (*SOURCES.values(), *sorted((paths.ROOT / "src/KOKKOS").iterdir())) if file.suffix in (".h", ".cpp")]
 
 
 def test_functions_fit_on_a_page():

@@ -35,7 +35,7 @@ TESTS = {
     "pair_fsi_solid.*": "solid integrator energy momentum", "pair_fsi_solid_tl.*": "solid_tl energy report contact",
     "fsi_law_list.h": "solid_tl viscoelastic", "fix_fsi_history.*": "viscoelastic",
     "fsi_bond_rows.h": "solid_tl plasticity", "fix_fsi_reference.*": "solid_tl plasticity", "fsi_bond_*.cpp": "solid_tl plasticity", "fsi_quadrature.cpp": "solid_tl", "fsi_damage.*": "solid_tl", "fsi_self_contact.*": "self_contact", "fsi_swaps.cpp": "solid_tl wall_particles", "fsi_frame.cpp": "lists", "fsi_clamps.cpp": "clamp", "fsi_lammps_access.cpp": "clamp gravity", "fsi_images.h": "symmetry",
-    "pair_fsi.cpp": "solid density solid_tl", "fix_fsi.cpp": "integrator density momentum restart", "fsi_number_density.*": "density surface parallel restart",
+    "pair_fsi.cpp": "solid density solid_tl", "fix_fsi.cpp": "integrator density momentum restart", "fsi_motion.cpp": "integrator momentum", "fsi_number_density.*": "density surface parallel restart",
     "fsi_hub.cpp": "surface density energy", "fsi_body_forces.cpp": "density energy gravity", "fsi_fields.cpp": "parallel restart",
     "fix_fsi_stress.*": "solid integrator plasticity restart", "fix_fsi_wall_mirror.cpp": "walls report", "fix_fsi_wall_particle.cpp": "wall_particles",
     "fix_fsi_dt.cpp": "dt", "fsi_limits.cpp": "dt watch", "fix_fsi_move.cpp": "move", "fix_fsi_stream.cpp": "stream",

@@ -39,7 +39,7 @@ def left_out():
 
 def test_sources_are_all_there(tree):
     for package, some in (("FSI", {"README", "fix_fsi.cpp"}), ("FSI-CLASSIC", {"README", "pair_fsi_solid.cpp"}),
-                          ("OPENMP", {"pair_fsi_fluid_omp.cpp"})):
+                          ("OPENMP", {"pair_fsi_fluid_omp.cpp"}), ("KOKKOS", {"pair_fsi_fluid_kokkos.cpp"})):
         sources = {path.name: path.read_text()
                    for path in (paths.ROOT / "src" / package).glob("[!.]*")}
         assert {path.name: path.read_text() for path in (tree / "src" / package).iterdir()} == sources
@@ -56,7 +56,7 @@ def test_sources_are_all_there(tree):
     ("doc/src/Build_extras.rst", ".. _fsi:"), (PACKAGES, "   * - :ref:`FSI <PKG-FSI>`"),
     ("cmake/CMakeLists.txt", "  FSI-CLASSIC"), ("src/Makefile", "\tfsi-classic \\"),
     ("cmake/CMakeLists.txt", "pkg_depends(FSI-CLASSIC FSI)"),
-    ("doc/src/Commands_pair.rst", "   * :doc:`fsi/fluid (o) <pair_fsi_fluid>`"),
+    ("doc/src/Commands_pair.rst", "   * :doc:`fsi/fluid (ko) <pair_fsi_fluid>`"),
     (PACKAGES, "   * - :ref:`FSI-CLASSIC <PKG-FSI-CLASSIC>`"),
     ("doc/src/Packages_details.rst", ".. _PKG-FSI-CLASSIC:"),
     ("doc/src/Packages_details.rst", ".. _PKG-FSI:"), ("doc/src/Howto.rst", "   Howto_fsi"),

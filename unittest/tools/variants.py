@@ -54,7 +54,7 @@ PAIRS = {
     "grains": ("grains", "contact", "plastic", "mirrors"),
 }
 assert all(allowed(levels) for levels in PAIRS.values())
-SOURCES = [path for package in ("FSI", "FSI-CLASSIC", "OPENMP") for path in sorted((ROOT / "src" / package).iterdir())
+SOURCES = [path for package in ("FSI", "FSI-CLASSIC", "OPENMP", "KOKKOS") for path in sorted((ROOT / "src" / package).iterdir())
            if path.suffix in (".h", ".cpp")]
 ROUND_OFF = 1e-11  # 40 steps with sums in another order, as in test_restart.py
 TAIL = """compute energy all fsi/energy
