@@ -305,8 +305,8 @@ class Reader:
 
 
 def cmake_variables():
-    """Names of all options that the build knows, LAMMPS' as well; the last where it has package KOKKOS."""
-    return {*re.findall(r"^(\w+):", (paths.BUILD / "CMakeCache.txt").read_text(), re.M), "EXTERNAL_KOKKOS"}
+    """Names of all options that the build knows, LAMMPS' as well; the last two where they are given."""
+    return {*re.findall(r"^(\w+):", (paths.BUILD / "CMakeCache.txt").read_text(), re.M), "CMAKE_CXX_STANDARD", "EXTERNAL_KOKKOS"}
 
 
 @pytest.mark.parametrize("commands", SESSIONS, ids=[f"{path}-{'; '.join(lines)[:60]}" for lines, path in SESSIONS.items()])
