@@ -2,16 +2,18 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from decks import INVISCID, deck, resume
 from scenes import DX, Deck, dam_gate, difference, fluid_box, lammps, particles, run
 
-ROOT = Path(__file__).resolve().parents[2]
-# Sums in another order: some hundred terms of 1e-16 of the largest. What is missing shows at 1e-3 and above.
-CLOSE, LATER = 1e-11, 1e-8
+from fsi import paths
+
+# Sums in another order: some hundred terms of 1e-16 of the largest. What is missing shows at 1e-3 and above. In single precision (FSI_CMAKE_OPTIONS=
+# -DKOKKOS_PREC=single) arrays of the host and of Kokkos are apart on processors, too: then these tests show what was not brought from one to the other.
+SINGLE = re.search("^KOKKOS_PREC:STRING=single", (paths.BUILD / "CMakeCache.txt").read_text(), re.M)
+CLOSE, LATER = (5e-3, 5e-2) if SINGLE else (1e-11, 1e-8)
 STEPS = 20
 
 
@@ -203,7 +205,7 @@ def test_restart(tmp_path, ranks):
 @pytest.mark.parametrize("name, options", [("dam_break", ("-var", "dx", "0.03")), ("dam_break", ("-var", "dx", "0.015"))])
 def test_dam_break(tmp_path, name, options):
     """The bundled deck as it is, but for its end"""
-    text = (ROOT / "examples" / name / f"in.{name}").read_text()
+    text = (paths.EXAMPLES / name / f"in.{name}").read_text()
     text = re.sub(r"^fsi/dump .*$|^fsi/run .*$", "", text, flags=re.M) + watch(every=100) + "run 200\n"
     frames = [run(tmp_path / str(k), text, ranks, arguments=(*options, *arguments)).frames() for k, (ranks, arguments) in
               enumerate(((1, ()), (1, kokkos()), (2, kokkos(2))))]
