@@ -327,8 +327,8 @@ def words_of_pages():
         text = page.read_text()
         syntax = re.search(r'\nSyntax\n"+\n(.*?)\nExamples\n"', text, re.S)
         if syntax:
-            # "threads" has those with suffix omp
-            styles = {re.sub(r" command$|/omp$", "", name).split()[-1] for name in re.findall(r"^\.\. index:: (.*)$", text, re.M)}
+            # "threads" has those with suffix omp, unittest/kokkos those with kk
+            styles = {re.sub(r" command$|/omp$|/kk$", "", name).split()[-1] for name in re.findall(r"^\.\. index:: (.*)$", text, re.M)}
             found[page.stem] = styles, set(re.findall(r"\*([a-z][a-z/]*\d?)\*", syntax[1])) | styles
     return found
 
