@@ -291,7 +291,7 @@ ELSEWHERE = {
     "fix_fsi_stream": {"test_stream": "along x y z"},
     "fix_fsi_stress": {"test_solid": "plane strain"},
     "fix_fsi_wall_mirror": {"test_walls": "guard hydrostatic zlo", "test_inlet": "zhi"},
-    "fix_fsi_wall_particle": {"test_wall_particles": "yes mean tension", "test_fuzz": "auto"},
+    "fix_fsi_wall_particle": {"test_wall_particles": "yes mean tension closed", "test_fuzz": "auto"},
     "fix_fsi_watch": {"test_watch": "fsi/watch action density distance energy lost off stop warn"},
     "fsi_displace": {"test_displace": "fsi/displace all"},
     "fsi_clamp": {"test_clamp_command": "fsi/clamp"},
