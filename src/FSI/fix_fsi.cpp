@@ -29,7 +29,6 @@
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
-#include "fsi_motion.h"
 #include "fsi_number_density.h"
 #include "fsi_others.h"
 #include "fsi_part.h"
@@ -328,11 +327,6 @@ void FixFSI::post_integrate()
   if (clamps.any()) clamps.to_middle();
 }
 
-void FixFSI::drift()
-{
-  FSI::drift(lmp, disc, step, groupbit);
-}
-
 // paper eqs. 17 and 18: kick, and drift to the end of the step
 void FixFSI::final_integrate()
 {
@@ -344,11 +338,6 @@ void FixFSI::final_integrate()
   ledger.set_tally(update->dt);
   for (auto *p : parts) p->react();
   kick();
-}
-
-void FixFSI::kick()
-{
-  FSI::kick(lmp, disc, step, groupbit);
   members->others.turn(update->dt);
 }
 

@@ -11,40 +11,40 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_motion.h"
+// Drift and kick of fix fsi: loops over this rank's particles, on the host
+
+#include "fix_fsi.h"
 
 #include "atom.h"
 #include "force.h"
 #include "fsi_hub.h"
-#include "lammps.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-template <int D> static void drift_in(LAMMPS *lmp, const StepState &step, int groupbit)
+template <int D>
+static void drift_in(const Atom *atom, const StepState &step, double dth, int groupbit)
 {
-  const Atom *const atom = lmp->atom;
   Vector *const x = vectors(atom->x), *const v = vectors(atom->v);
   const int *const mask = atom->mask;
-  step.for_particles(atom->nlocal, [=, bit = groupbit, dth = 0.5 * lmp->update->dt](int i) {
-    if (mask[i] & bit)
+  step.for_particles(atom->nlocal, [=](int i) {
+    if (mask[i] & groupbit)
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
   });
 }
 
+// Solids with sub-steps have been kicked in these
 template <int D>
-static void kick_in(LAMMPS *lmp, const Discretization &disc, const StepState &step, int groupbit)
+static void kick_in(const Atom *atom, const State *state, const StepState &step, double dtf,
+                    double dth, int groupbit)
 {
-  const Atom *const atom = lmp->atom;
   Vector *const x = vectors(atom->x), *const v = vectors(atom->v), *const f = vectors(atom->f);
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
-  const double dt = lmp->update->dt, dtf = dt * lmp->force->ftm2v, dth = 0.5 * dt;
-  const State *const state = disc.state.data();
   double *const *const shift = step.shifts ? step.shift : nullptr;
-  step.for_particles(atom->nlocal, [=, bit = groupbit, no_solids = step.substeps > 1](int i) {
-    if (!(mask[i] & bit) || (no_solids && state[type[i]].species == SOLID)) return;
+  step.for_particles(atom->nlocal, [=, no_solids = step.substeps > 1](int i) {
+    if (!(mask[i] & groupbit) || (no_solids && state[type[i]].species == SOLID)) return;
     const double dtfm = dtf / rmass[i];
     for (int d = 0; d < D; d++) {
       v[i][d] += dtfm * f[i][d];
@@ -55,12 +55,14 @@ static void kick_in(LAMMPS *lmp, const Discretization &disc, const StepState &st
   });
 }
 
-void FSI::drift(LAMMPS *lmp, const Discretization &disc, const StepState &step, int groupbit)
+void FixFSI::drift()
 {
-  disc.dim == 2 ? drift_in<2>(lmp, step, groupbit) : drift_in<3>(lmp, step, groupbit);
+  (disc.dim == 2 ? drift_in<2> : drift_in<3>) (atom, step, 0.5 * update->dt, groupbit);
 }
 
-void FSI::kick(LAMMPS *lmp, const Discretization &disc, const StepState &step, int groupbit)
+void FixFSI::kick()
 {
-  disc.dim == 2 ? kick_in<2>(lmp, disc, step, groupbit) : kick_in<3>(lmp, disc, step, groupbit);
+  const double dt = update->dt;
+  (disc.dim == 2 ? kick_in<2> : kick_in<3>) (atom, disc.state.data(), step, dt * force->ftm2v,
+                                             0.5 * dt, groupbit);
 }

@@ -57,7 +57,6 @@ class PairFSIFluidKokkos : public PairFSIFluid {
   template <class K> void find_rates(const K &);
   template <class K> void find_forces(const K &, bool tally);
   template <class K, bool SUMS> void run_forces(const K &, double *sums, int nsums);
-  void take(const double *sums, bool tally);
 };
 
 }    // namespace LAMMPS_NS
