@@ -1,12 +1,22 @@
 #!/bin/sh
 # Obtains a LAMMPS release once and prints the folder of its sources.
 #   usage: obtain-lammps.sh CACHE_FOLDER [RELEASE]     (RELEASE: 20250204, the default, or 20260704)
+#          obtain-lammps.sh --archive                  only prints the Debian archive that apt uses
 # On Debian and its derivatives through apt's source archive of the suite below (apt checks the archive's
 # signature), with private lists made from the system's own entry: nothing on the system is changed.
 # Elsewhere, or if that fails, from upstream's release archive. Either archive must have the SHA-256 given.
 set -eu
 
 say() { printf '%s\n' "obtain-lammps: $*" >&2; }
+
+# the first Debian archive that the system itself uses
+archive_of_system() {
+  uri=$(sed -n 's/^URIs:[[:space:]]*\([^[:space:]]*\).*/\1/p' /etc/apt/sources.list.d/debian.sources 2>/dev/null | head -n 1)
+  [ -n "$uri" ] || uri=$(sed -n 's/^deb[[:space:]]\(\[[^]]*\][[:space:]]*\)\{0,1\}\([a-z+]*:[^[:space:]]*\).*/\2/p' \
+    /etc/apt/sources.list 2>/dev/null | head -n 1)
+  echo "$uri"
+}
+if [ "${1:-}" = --archive ]; then archive_of_system; exit 0; fi
 
 cache=${1:?usage: obtain-lammps.sh CACHE_FOLDER [RELEASE]}
 version=${2:-20250204}
@@ -28,10 +38,7 @@ trap 'rm -rf "$work"' EXIT INT TERM
 
 from_apt() {
   command -v apt-get >/dev/null 2>&1 || { say "no apt-get on this system"; return 1; }
-  # the first Debian archive that the system itself uses
-  uri=$(sed -n 's/^URIs:[[:space:]]*\([^[:space:]]*\).*/\1/p' /etc/apt/sources.list.d/debian.sources 2>/dev/null | head -n 1)
-  [ -n "$uri" ] || uri=$(sed -n 's/^deb[[:space:]]\(\[[^]]*\][[:space:]]*\)\{0,1\}\([a-z+]*:[^[:space:]]*\).*/\2/p' \
-    /etc/apt/sources.list 2>/dev/null | head -n 1)
+  uri=$(archive_of_system)
   [ -n "$uri" ] || { say "no Debian archive in apt's sources"; return 1; }
   keyring=/usr/share/keyrings/debian-archive-keyring.gpg
   [ -f "$keyring" ] || { say "no Debian archive keyring (package debian-archive-keyring)"; return 1; }
