@@ -36,6 +36,10 @@ namespace FSI {
 
   // What a fluid particle meets, and by which rule: couple wall; couple full, the paper's
   enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_FULL };
+  constexpr bool with_solid(int kind)
+  {
+    return kind == WITH_SOLID || kind == WITH_SOLID_FULL;
+  }
 
   // The form of laminar viscosity
   enum Laminar { NO_LAMINAR, PLAIN_LAMINAR, CENTRAL_LAMINAR };

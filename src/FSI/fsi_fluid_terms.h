@@ -385,6 +385,7 @@ namespace FSI {
   struct RowConstants {
     double c, bulk, floor;     // speed of sound of viscosity, modulus of the guard, lowest pressure
     double rubs, visc;         // 0 where a wall slips, else 1; sum of both viscosities
+    double at_rest;            // volume of i at rest, over the density of j at rest (of solids: 1)
     double volume, sharper;    // of neighbors of another spacing
     bool thin, mirrors_own;
     double extrapolate[3];    // solids and thin walls: gravity, if pressures beyond them are
@@ -405,6 +406,9 @@ namespace FSI {
     const bool slips = KIND == WITH_FLUID ? false
         : KIND == WITH_WALL               ? !other.noslip
                                           : laws.solids_slip;
+    const auto &own_point = reinterpret_cast<const Point<D> *>(in.points)[i];
+    r.at_rest =
+        own_point.rho * own_point.vol * fluid.inv_rho0 * (with_solid(KIND) ? 1.0 : other.inv_rho0);
     r.rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
     const double own = laws.viscosity ? laws.viscosity[i] : fluid.viscosity;
     r.visc = !laws.laminar || slips
@@ -444,6 +448,10 @@ namespace FSI {
     }
   };
 
+  // Volumes of fluids and walls in laminar viscosity are those at rest, m/rho0: shifting lets
+  // density drift from the number of particles, and m/rho would make viscosity too small twice over.
+  // Solids are as large as they are.
+  //
   // Adds laminar viscosity to the force on i and, of images, on j; what it takes from their energy,
   // times 2 for images, which each pair meets from both sides.
   template <class T, int KIND, int FLAGS, int D>
@@ -460,7 +468,7 @@ namespace FSI {
         return laws.wall_velocity[j[k]][d];
       });
     };
-    const T vv = pi.vol * pj.vol;
+    const T vv = constant.at_rest * (with_solid(KIND) ? pj.vol : pj.rho * pj.vol);
     T rubbing[D], loss = 0.0;
     for (T &r : rubbing) r = 0.0;
     if (FLAGS & Flag::IMAGES) {

@@ -84,7 +84,10 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
         const Point<D> &pi = point[row.i], &pj = point[*j];
         double x[D];
         places_apart<true>(image, pi.x, pj.x, x);
-        double g = -kernel.gradient(std::sqrt(FSI::product(x, x))) * pi.vol * pj.vol;
+        const State &of_i = in.state[in.type[row.i]], &of_j = in.state[in.type[*j]];
+        double g = -kernel.gradient(std::sqrt(FSI::product(x, x))) * pi.rho * pi.vol *
+            of_i.inv_rho0 * pj.vol;
+        if (of_j.species != SOLID) g *= pj.rho * of_j.inv_rho0;    // as in explicit forces
         if (mirror && *j == row.i) g *= 0.5;    // it is seen from both sides of the pair
         if (hidden) g *= visible[j - rows[0].j];
         if (fluids) {
@@ -99,8 +102,7 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
           }
           continue;
         }
-        const State &other = in.state[in.type[*j]];
-        if (other.species == RIGID && !other.noslip) continue;
+        if (of_j.species == RIGID && !of_j.noslip) continue;
         const double of_face =
             2.0 * cut_off(in, j, g) * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
         for (int d = 0; d < D; d++) {

@@ -91,7 +91,7 @@ class Fluid:
         pv2 = self.p(s.rho) * V**2
         pair = -(pv2[i] + pv2[j] + Q)[:, None] * d
         rubbing = k.rubbing("central", k.h / DX, s.v[i] - s.v[j], d)
-        pair += (V[i] * V[j] * 2 * self.eta)[:, None] * rubbing
+        pair += (s.m[i] * s.m[j] / 1000**2 * 2 * self.eta)[:, None] * rubbing
         return sum_over(i, pair * k.g(r)[:, None], len(s.x))
 
     def advance(self, s):

@@ -113,7 +113,8 @@ def test_pair_law(dim, couple, more):
             W = s.kernel.W(r)[:, None]
             of_fluid = sum_over(j, W * v[i], s.n) / np.maximum(sum_over(j, W, s.n), 1e-300)
             seen = np.where(solid[:, None] & of_fluid.any(1, keepdims=True), 2 * v - of_fluid, v)
-            u, k = v[i] - seen[j], (V[i] * V[j] * 2 * 20)[:, None]
+            rest = np.where(solid, V, s.get("rmass") / 1000)    # volumes of the fluid are those at rest
+            u, k = v[i] - seen[j], (rest[i] * rest[j] * 2 * 20)[:, None]
             if "slip" in more:
                 k = np.where(solid[j][:, None], 0.0, k)
             pair += k * s.kernel.rubbing(more, s.kernel.h / s.dx, u, d)

@@ -57,7 +57,7 @@ def test_pair_law(dim, ratio, fluid, kernel):
                 mu = np.minimum((w * d).sum(1), 0) * k.h / (r**2 + 0.01 * k.h**2)
                 pair -= ((rho[i] + rho[j]) / 2 * V[i] * V[j] * (-0.3 * 10 * mu + 0.5 * mu**2) * g)[:, None] * d
             if "laminar" in fluid:
-                pair += (V[i] * V[j] * 2 * 20 * g)[:, None] * k.rubbing(fluid, 1.2, w, d)
+                pair += (m[i] * m[j] / 1000**2 * 2 * 20 * g)[:, None] * k.rubbing(fluid, 1.2, w, d)
             force += sum_over(i, pair, s.n)
             psi += sum_over(i, omega * k.W(r), s.n)
         close(s.get("f"), force, 1e-12)

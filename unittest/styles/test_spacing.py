@@ -59,7 +59,7 @@ def test_pair_law(dim, ratio, fluid):
             w = s.kernel.W(r)[:, None]
             of_fluid = sum_over(j, w * v[i], s.n) / np.maximum(sum_over(j, w, s.n), 1e-300)
             u = v[i] - np.where(solid[:, None] & of_fluid.any(1, keepdims=True), 2 * v - of_fluid, v)[j]
-            pair += (V[i] * V[j] * 2 * 20 * s.kernel.g(r))[:, None] * s.kernel.rubbing(fluid, s.kernel.h / s.dx, u, d)
+            pair += (m[i] * m[j] / 1000**2 * 2 * 20 * s.kernel.g(r))[:, None] * s.kernel.rubbing(fluid, s.kernel.h / s.dx, u, d)
         expected = sum_over(i, pair, s.n) + m[:, None] * g
         close(s.get("f")[~solid], expected[~solid], 1e-12)
         psi = s.kernel.W(0) + sum_over(i, omega * W, s.n)

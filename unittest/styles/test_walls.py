@@ -89,7 +89,7 @@ def reference(scene, x, v, rho, walls, artificial, viscosity, central=False):
     mu = np.minimum((u * d).sum(1), 0) * k.h / (r**2 + 0.01 * k.h**2) * artificial
     Q = (rho[i] + rho[j]) / 2 * V[i] * V[j] * (-ALPHA * C * mu + BETA * mu**2)
     pair = -((p * V**2)[i] + (p * V**2)[j] + Q)[:, None] * g[:, None] * d
-    pair += (V[i] * V[j] * 2 * viscosity * g)[:, None] * k.rubbing("central" * central, k.h / scene.dx, uv, d)
+    pair += (m[i] * m[j] / 1000**2 * 2 * viscosity * g)[:, None] * k.rubbing("central" * central, k.h / scene.dx, uv, d)
     force, rate = np.zeros((n, 3)), np.zeros(n)
     np.add.at(force, i, pair)
     np.add.at(rate, i, m[i] * g * (u * d).sum(1))
