@@ -42,7 +42,7 @@ static constexpr double FREE = HUGE_VAL;    // stands for NULL
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{},
-    given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), origin(now()),
+    given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), last{}, origin(now()),
     original(nullptr), begun(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
@@ -176,7 +176,37 @@ void FixFSIMove::setup_pre_exchange()
 {
   if (!begun) origin = now();    // the clock of a restart file is right from init() on
   begun = true;
+  go_on_from_here();
   move(START);
+}
+
+// Commands between runs may have moved particles: their motion goes on from there. A variable that
+// is not 0 at its start, or that a command has changed, moves them in the first step, though.
+void FixFSIMove::go_on_from_here()
+{
+  constexpr double ROUND = 1.0e-6;
+  const double round = ROUND * FixFSI::find(lmp, "Fix fsi/move")->disc.dx, t = now() - origin;
+  if (motion == VARIABLE && (evaluated < 0 || given->of_atoms()))
+    given->evaluate(igroup, 0, 2 * VELOCITY);
+  for (int k = 0; k < 3 && evaluated < 0; k++) last[k] = given->number(k);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    double to[3], v[3], off[3] = {};
+    where(i, t, to, v);
+    for (int k = 0; k < domain->dimension; k++) {
+      if (t == 0.0)
+        to[k] = original[i][k];
+      else if (given->source(k) == Values::EQUAL)
+        to[k] = original[i][k] + last[k];
+      if (driven[k]) off[k] = atom->x[i][k] - to[k];
+    }
+    to_nearest_image(*domain, off);
+    if (MathExtra::lensq3(off) <= round * round) continue;
+    for (int k = 0; k < 3; k++) original[i][k] += off[k];
+    if (motion != ROTATE && motion != TRANSROT) continue;
+    domain->unmap(atom->x[i], atom->image[i], original[i]);
+    turn_back(original[i], t);
+  }
 }
 
 void FixFSIMove::initial_integrate(int)
@@ -248,6 +278,15 @@ void FixFSIMove::follow(const double *from, double t, double *x, double *v) cons
   }
 }
 
+void FixFSIMove::where(int i, double t, double *x, double *v) const
+{
+  if (motion != VARIABLE) return follow(original[i], t, x, v);
+  for (int k = 0; k < 3; k++) {
+    x[k] = original[i][k] + (*given)(k, i);
+    v[k] = (*given)(VELOCITY + k, i);
+  }
+}
+
 bool FixFSIMove::velocity_at_end(int i, double *v) const
 {
   double x[3];
@@ -263,13 +302,16 @@ bool FixFSIMove::velocity_at_end(int i, double *v) const
 // is free goes with position Verlet, as fix fsi has it.
 void FixFSIMove::move(When when)
 {
-  const double dt = update->dt, back = when == MIDDLE ? 0.5 * dt : 0.0, t = now() - origin - back;
+  const double dt = update->dt;
+  const double back = when == MIDDLE ? 0.5 * dt : when == BACK ? dt : 0.0;
+  const double t = now() - origin - back;
   if (motion == VARIABLE) {
     const double clock = update->atime;
     update->atime -= back;
     given->evaluate(igroup, 0, 2 * VELOCITY);
     update->atime = clock;
-    if (when != MIDDLE) evaluated = update->ntimestep;
+    if (back == 0.0) evaluated = update->ntimestep;
+    for (int k = 0; k < 3 && when == END; k++) last[k] = given->number(k);
   }
   double **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -277,18 +319,14 @@ void FixFSIMove::move(When when)
     double *const x = atom->x[i], *const v = atom->v[i];
     double old[3] = {x[0], x[1], x[2]};
     double to[3], fast[3];
-    if (motion != VARIABLE) follow(original[i], t, to, fast);
+    where(i, t, to, fast);
     for (int k = 0; k < domain->dimension; k++) {
-      if (motion == VARIABLE) {
-        to[k] = original[i][k] + (*given)(k, i);
-        fast[k] = (*given)(VELOCITY + k, i);
-        if (when == END && driven[k] && of_atom(k)) {
-          double moved[3] = {};
-          moved[k] = to[k] - x[k];
-          to_nearest_image(*domain, moved);
-          compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::fabs(x[k]) + std::fabs(to[k]),
-                           i);
-        }
+      if (when == END && driven[k] && of_atom(k)) {
+        double moved[3] = {};
+        moved[k] = to[k] - x[k];
+        to_nearest_image(*domain, moved);
+        compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::fabs(x[k]) + std::fabs(to[k]),
+                         i);
       }
       if (when != MIDDLE && sets_velocity(k)) v[k] = fast[k];
       if (when == START) continue;
@@ -296,7 +334,7 @@ void FixFSIMove::move(When when)
       if (driven[k])
         x[k] = to[k];
       else
-        x[k] += 0.5 * dt * v[k];
+        x[k] += (when == BACK ? -0.5 : 0.5) * dt * v[k];
     }
     if (when != START) domain->remap_near(x, old);
   }
@@ -363,14 +401,20 @@ void FixFSIMove::set_arrays(int i)
                  id);
     for (int k = 0; k < 3; k++) shift[k] = given->number(k);
   } else if (motion == ROTATE || motion == TRANSROT) {
-    // the turn alone, backwards, of what has not been shifted; follow() shifts it back once more
-    double from[3], v[3];
-    for (int k = 0; k < 3; k++) from[k] = original[i][k] - rate[k] * t;
-    follow(from, -t, original[i], v);
-    for (int k = 0; k < 3; k++) original[i][k] += rate[k] * t;
+    turn_back(original[i], t);
     return;
   } else
     for (int k = 0; k < 3; k++) shift[k] = rate[k] * (motion == LINEAR ? t : std::sin(omega * t));
   for (int k = 0; k < 3; k++)
     if (driven[k]) original[i][k] -= shift[k];
+}
+
+// a place after the time t to that at the start of the motion
+void FixFSIMove::turn_back(double *x, double t) const
+{
+  // the turn alone, backwards, of what has not been shifted; follow() shifts it back once more
+  double from[3], v[3];
+  for (int k = 0; k < 3; k++) from[k] = x[k] - rate[k] * t;
+  follow(from, -t, x, v);
+  for (int k = 0; k < 3; k++) x[k] += rate[k] * t;
 }

@@ -21,6 +21,7 @@ FixStyle(fsi/move,FixFSIMove);
 #define LMP_FIX_FSI_MOVE_H
 
 #include "fsi_fields.h"
+#include "fsi_part.h"
 
 #include <memory>
 #include <string>
@@ -35,7 +36,7 @@ namespace FSI {
 // Prescribed motion of walls and held solids as a function of time: fix move of LAMMPS for time
 // steps that change, with positions at the middle of the step where fix fsi has its forces.
 
-class FixFSIMove : public FSI::FixFields {
+class FixFSIMove : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIMove(class LAMMPS *, int, char **);
   ~FixFSIMove() override;
@@ -48,6 +49,7 @@ class FixFSIMove : public FSI::FixFields {
   void pre_exchange() override {}
   void initial_integrate(int) override;
   void final_integrate() override { move(END); }
+  void go_back() override { move(BACK); }
   void reset_dt() override {}
   // velocity of a particle of the group at the end of the step that is going on; false: not known
   // before it is there
@@ -70,11 +72,12 @@ class FixFSIMove : public FSI::FixFields {
   static constexpr int VELOCITY = 3;
   const std::unique_ptr<FSI::Values> given;
   bigint evaluated;     // the last step at whose end they are known
+  double last[3];       // displacements by equal-style ones at the end of the last step
   double origin;        // time at which particles were at
   double **original;    // these positions, not wrapped
   bool begun;           // the motion, in the setup of a run
 
-  enum When { START, MIDDLE, END };    // of a run, of a step
+  enum When { START, MIDDLE, END, BACK };    // of a run; of a step, from its middle to its start
 
   double now() const;
   std::string text() const;    // as in the command
@@ -84,6 +87,9 @@ class FixFSIMove : public FSI::FixFields {
   void compare_velocity(int k, double moved, double dt, double v, double v_end, double round,
                         int i = -1) const;
   void follow(const double *from, double t, double *x, double *v) const;
+  void where(int i, double t, double *x, double *v) const;
+  void go_on_from_here();
+  void turn_back(double *x, double t) const;
   void move(When);
 };
 

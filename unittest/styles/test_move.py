@@ -113,6 +113,52 @@ def test_what_is_free_falls():
         np.testing.assert_allclose(end[:, 0] - x[16:, 0], 0.1**3 + 0.5 * 0.1 * 1e-6, atol=1e-12)  # and the rule's error, h^2/12 of f'
 
 
+@pytest.mark.parametrize("style", STYLES)
+def test_goes_on_from_where_a_command_has_put_it(style):
+    """displace_atoms before the first run, and between runs: no way back, and the same motion from there."""
+    commands = ["lattice sq 0.1", VARIABLES, f"fix drive held fsi/move {style.replace(' Z', ' NULL')}"]
+    x, scene = held_lattice(dt=1e-3, density="mach off", commands=[*commands, "displace_atoms held move 0.02 0.01 0 units box"])
+    first, shift, exact = x[16:] + [0.02, 0.01, 0.0], np.array([-0.01, 0.03, 0.0]), STYLES[style]
+    offset = np.array([0.02, 0.01, 0.0])
+    with scene as s:
+        for _ in range(2):
+            s.run(0)
+            np.testing.assert_allclose(s.get("x")[16:], first, atol=1e-13)
+        s.run(20)
+        # variables that know where particles were at the command go on from that
+        moving = lambda t: exact(x[16:], t)[0] + offset if "variable" in style else exact(first, t)[0]    # noqa: E731
+        np.testing.assert_allclose(s.get("x")[16:], moving(0.02), atol=1e-13)
+        s.run_lines("displace_atoms held move -0.01 0.03 0 units box")
+        s.run(0).run(30)
+        drift = np.array([0.1, 0.4, 0.0]) if "transrot" in style else np.zeros(3)    # what turns is the place that has not drifted
+        again = turned(moving(0.02) + shift - drift * 0.02, 0.03, [0.5, 0.2, 0], [0, 0, 1])[0] + drift * 0.05
+        want = again if "rot" in style else moving(0.05) + shift
+        np.testing.assert_allclose(s.get("x")[16:], want, atol=1e-13)
+
+
+def test_a_variable_that_a_command_changes_moves_it():
+    """A displacement in steps, one with each run, as with fix move: not where a command has put it."""
+    x, scene = held_lattice(density="mach off", commands=["variable zero equal 0", "variable d equal 0.01",
+                                                          "fix drive held fsi/move variable v_d v_zero NULL v_zero v_zero NULL"])
+    with scene as s:
+        for d in (0.01, 0.02, 0.03):
+            s.run_lines(f"variable d equal {d}", "run 0", "run 1")
+            np.testing.assert_allclose(s.get("x")[16:], x[16:] + [d, 0.0, 0.0], atol=1e-13)
+
+
+def test_a_run_that_stops_in_a_step_puts_it_back(tmp_path, monkeypatch):
+    """So that the next run does not take the middle of that step for a place that a command has given."""
+    monkeypatch.chdir(tmp_path)
+    x, scene = held_lattice(dt=1e-4, commands=["fix drive held fsi/move rotate 0.5 0.2 0 0 0 2 3 units box"])
+    with scene as s:
+        s.run(10)
+        before = s.get("x")[16:]
+        s.run_lines("fix push moving addforce 1e12 0 0")
+        with pytest.raises(Exception, match="Mach number .* on step 11"):
+            s.run(5)
+        np.testing.assert_allclose(s.get("x")[16:], before, atol=1e-13)
+
+
 def test_through_a_periodic_boundary():
     """Twice around the box: places are those of the motion, wrapped."""
     x = lattice([4, 4], 0.1)
@@ -147,13 +193,14 @@ run 20
     assert np.hypot(last["x"][new] - 0.2, last["y"][new]) == pytest.approx(np.hypot(0.2, 0.15), abs=0.003)
 
 
-@pytest.mark.parametrize("ranks", (1, 2))
-def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
-    """Walls of particles, and a held solid, with steps that change."""
+@pytest.mark.parametrize("ranks, between", [(1, ""), (2, ""), (2, "run 20\ndisplace_atoms plate move 1e-4 0 0 units box\n")])
+def test_restart_goes_on_bit_for_bit(tmp_path, ranks, between):
+    """A held solid, with steps that change, also one that a command has moved."""
     scene = dam_gate(2)
     part = scene.physics().replace("fix sph all", "group water type 1\ngroup plate type 2\nfix sph water")
     tail = "fix drive plate fsi/move wiggle 0.002 NULL NULL 0.05 units box\nfix dt all fsi/dt 7\n"
-    whole = run(tmp_path, scene.setup() + "read_data scene.data\n" + part + tail + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data())
+    made = scene.setup() + "read_data scene.data\n" + part + tail + between
+    whole = run(tmp_path, made + watch(every=80) + "restart 40 mid.*\nrun 80 upto\n", ranks, scene_data=scene.data())
     rest = scene.setup() + "read_restart mid.40\n" + scene.physics(coeff=False).replace("fix sph all", "group water type 1\ngroup plate type 2\nfix sph water")
     done = run(tmp_path, rest + tail + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks)
     assert differing(whole.frames()[-1], done.frames("rest.dump")[-1]) == []
