@@ -20,21 +20,24 @@
 #include "fix_fsi.h"
 #include "fsi_changes.h"
 #include "fsi_find.h"
+#include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_record.h"
 #include "fsi_refusals.h"
 #include "fsi_solid_laws.h"
+#include "math_extra.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
-    ns(domain->dimension == 2 ? 3 : 6), start(nullptr), strain(nullptr)
+    ns(domain->dimension == 2 ? 3 : 6), start(nullptr), strain(nullptr), left(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
@@ -92,6 +95,7 @@ void FixFSIStress::init()
                  solid ? " now and was none" : " any more, as it was");
     if (!solid) first = FOREIGN;
   }
+  if (left && update->whichflag == 1) look_for_turns(disc);
   bool yields = false;
   for (const auto &s : disc.state) yields = yields || s.yield > 0.0;
   if (comm->me == 0 && plastic && !yields)
@@ -101,6 +105,39 @@ void FixFSIStress::init()
     error->warning(
         FLERR,
         "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
+}
+
+void FixFSIStress::post_run()
+{
+  fields.set("place after a run", Fields::ATOM, true, left, 3);
+  for (int i = 0; i < atom->nlocal; i++) std::copy_n(atom->x[i], 3, left[i]);
+}
+
+// Stresses know of turns by velocities only, not of what a command does between runs: then
+// particles of a body move differently
+void FixFSIStress::look_for_turns(const Discretization &disc)
+{
+  constexpr double SMALL = 1.0e-3;
+  std::map<tagint, int> first;    // of this rank, by body
+  const auto found = find_particles(atom, world, [&](int i) {
+    const auto is_zero = [](double s) {
+      return s == 0.0;
+    };
+    if (disc.state[atom->type[i]].species != FSI::SOLID ||
+        std::all_of(stress[i], stress[i] + ns, is_zero))
+      return false;
+    const int j = first.emplace(atom->molecule[i], i).first->second;
+    double d[3];
+    for (int k = 0; k < 3; k++) d[k] = atom->x[i][k] - left[i][k] - (atom->x[j][k] - left[j][k]);
+    to_nearest_image(*domain, d);
+    return MathExtra::len3(d) > SMALL * disc.dx;
+  });
+  if (found.count && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix fsi/stress: a command has turned or strained a body since the last run, "
+                   "that of atom {}: its stress stays as it was",
+                   found.first);
+  fields.set("place after a run", Fields::ATOM, false, left, 3);
 }
 
 // S:S/(4G), with S_zz of plane strain

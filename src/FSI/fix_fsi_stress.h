@@ -33,7 +33,8 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   FixFSIStress(class LAMMPS *, int, char **);
   ~FixFSIStress() override;
   static FixFSIStress *find(class LAMMPS *);    // null: there is none
-  int setmask() override { return 0; }
+  int setmask() override { return FixConst::POST_RUN; }
+  void post_run() override;
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -71,7 +72,9 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   int ns;                                        // components of the deviator
   double **start;    // places, and whether there is one; null without keyword self
   double *strain;    // equivalent plastic strain; null without plastic
+  double **left;     // where the last run has left particles, until the next one
   void choose_fields();
+  void look_for_turns(const FSI::Discretization &);
 };
 
 }    // namespace LAMMPS_NS

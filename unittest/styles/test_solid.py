@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import KERNELS, Scene, close, cloud, lattice, pairs, sum_over
+from decks import total_lagrangian
+from scenes import KERNELS, Scene, close, cloud, dam_gate, lattice, pairs, run, sum_over
 
 RHO, E, NU = 1000.0, 1.0e5, 0.3
 MATERIAL = f"solid rho {RHO} young {E} poisson {NU}"
@@ -296,3 +297,28 @@ def test_quadratic_field(dim):
             sigma = np.array(inplane(s.run(1).sigma, dim))
         error[gradient] = np.abs(sigma - expected).max() / np.abs(expected).max()
     assert error["quadratic"] < 1e-5 < 0.01 < error["corrected"]
+
+
+@pytest.mark.parametrize("ranks", (1, 2))
+@pytest.mark.parametrize("law", ("rate", "hypo"))
+def test_turned_between_runs(tmp_path, law, ranks):
+    """Stress is not turned, which a warning says: of what turns or strains a body that has stress, not of what moves it as a whole."""
+    scene = dam_gate(2)
+    text = scene.text() if law == "rate" else total_lagrangian(scene.text()).replace("0.1 0.1", "0.1 0.1 law hypo") + "fix stress all fsi/stress\n"
+    text = text.replace("fix sph all", "group water type 1\ngroup plate type 2\nfix sph all")
+    turn = "displace_atoms plate rotate 0 0 0 0 0 1 {} units box\n"
+    done = run(tmp_path, f"""{text}
+{turn.format(0.1)}
+run 10
+displace_atoms all move 1e-3 0 0 units box
+write_data some.data
+run 10
+print "till here none"
+{turn.format(0.1)}
+run 0
+{turn.format(0)}
+run 0
+""", ranks, scene_data=scene.data())
+    before, after = done.output.split("\ntill here none\n")
+    warning = "Fix fsi/stress: a command has turned or strained a body since the last run"
+    assert warning not in before and after.count("WARNING: " + warning) == 1
