@@ -498,8 +498,8 @@ void ComputeFSIProbe::take(const Place &place)
   }
   fit = gather_fit(fit);
   if (fit.empty())
-    error->all(FLERR, "Compute fsi/probe {}: no solid of group {} within {} spacings of {} {} {}",
-               id, group->names[igroup], REACH, place.from[0], place.from[1], place.from[2]);
+    error->all(FLERR, "Compute fsi/probe {}: no solid of group {} within {} spacings of {}", id,
+               group->names[igroup], REACH, place_text(place.from));
   const Fitted *nearest = fit.data();
   for (const auto &one : fit)
     if (one.weight > nearest->weight) nearest = &one;

@@ -163,7 +163,7 @@ void FixFSIInlet::check_made() const
        std::fabs(end.length - made[1]) <= 1.0e-6 * disc->dx))
     return;
   error->all(FLERR,
-             "{}: {} has its plane at {:g} with a buffer of {:g}, here it is {:g} with {:g}: "
+             "{}: {} has its plane at {:.10g} with a buffer of {:g}, here it is {:.10g} with {:g}: "
              "expected the same, since the buffer is full. Give keyword buffer if the skin has "
              "changed",
              end.name, of_file ? "the restart file" : "the last run", made[0], made[1],

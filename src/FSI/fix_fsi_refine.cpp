@@ -361,9 +361,9 @@ bool FixFSIRefine::in_open_end(int i, int wish) const
     if (!end->holds(x)) continue;
     if (wish)
       error->one(FLERR,
-                 "Atom {} at {:g} {:g} {:g} is in the buffer of fix {}, and in the zone of a finer "
+                 "Atom {} at {} is in the buffer of fix {}, and in the zone of a finer "
                  "level: keep open ends in the coarsest level, away from what fix {} refines",
-                 atom->tag[i], x[0], x[1], x[2], end->id, id);
+                 atom->tag[i], place_text(x), end->id, id);
     return true;
   }
   return false;
@@ -385,10 +385,10 @@ void FixFSIRefine::check_zones() const
       inner.around(x, [&](int j, double rsq) {
         if (rsq >= support * support) return;
         error->one(FLERR,
-                   "Atom {} at {:g} {:g} {:g} is not in the zone of type {}, but only {:.3g} from "
+                   "Atom {} at {} is not in the zone of type {}, but only {:.3g} from "
                    "atom {}, which is in that of type {}{}: fix {} needs zones inside each other, "
                    "at least the kernel's support of type {} apart, {:g}",
-                   atom->tag[i], x[0], x[1], x[2], types[k], std::sqrt(rsq), atom->tag[j],
+                   atom->tag[i], place_text(x), types[k], std::sqrt(rsq), atom->tag[j],
                    types[k + 1], zones->names(k), id, types[k - 1], support);
       });
     }

@@ -187,8 +187,8 @@ void FixFSIWallMirror::setup(int)
     if (!(mask[i] & groupbit) || disc->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls)
       if (!w.finite && w.distance(x[i]) < -disc->dx)
-        error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {} wall of fix {}", atom->tag[i],
-                   x[i][0], x[i][1], x[i][2], face(w), id);
+        error->one(FLERR, "Fluid atom {} at {} is behind the {} wall of fix {}", atom->tag[i],
+                   place_text(x[i]), face(w), id);
   }
 }
 

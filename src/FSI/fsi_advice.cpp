@@ -26,6 +26,7 @@
 #include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
 #include "fsi_limits.h"
 #include "fsi_preset.h"
 #include "fsi_sight.h"
@@ -271,9 +272,9 @@ static Near find_nearest(const Census &c, double *sum, std::vector<double> &of_b
     const bool wall = !c.fluid(i) && !c.solid(i);
     if (r < SAME_PLACE && !wall)
       c.error->one(FLERR,
-                   "Fix fsi: atoms {} and {} are at the same place, {:g} {:g} {:g}: were they "
+                   "Fix fsi: atoms {} and {} are at the same place, {}: were they "
                    "created twice? delete_atoms overlap",
-                   atom->tag[i], atom->tag[next], atom->x[i][0], atom->x[i][1], atom->x[i][2]);
+                   atom->tag[i], atom->tag[next], place_text(atom->x[i]));
     here[0] += r;
     here[1]++;
     if (r < closest.r && !(wall && !c.fluid(next) && !c.solid(next)))    // walls may cross
@@ -389,9 +390,9 @@ static void cut_by_walls(const Census &c)
             walls[n].axis == walls[k].axis && walls[n].side != walls[k].side && ends[n].count(body);
       if (!both)
         return c.warn(
-            "body {} ends at the mirror wall at {} = {:g}, and its face there is free, since these "
-            "walls act on fluid alone: a body cut by a plane of symmetry needs symmetry yes, or "
-            "must be held there",
+            "body {} ends at the mirror wall at {} = {:.10g}, and its face there is free, since "
+            "these walls act on fluid alone: a body cut by a plane of symmetry needs symmetry yes, "
+            "or must be held there",
             body, "xyz"[walls[k].axis], walls[k].position);
     }
 }

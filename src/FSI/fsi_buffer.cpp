@@ -165,7 +165,7 @@ void Buffer::check_slices(const std::vector<int> &rank_local) const
   if (few == all.end() || comm->me) return;
   const double from = end.position - end.side * (few - all.begin()) * disc->dx;
   error->warning(FLERR,
-                 "{}: its buffer has {} particles from {} to {:g} and {} elsewhere: what is not "
+                 "{}: its buffer has {} particles from {} to {:.10g} and {} elsewhere: what is not "
                  "there will not come in. Fill it to {}, or leave it empty",
                  end.name, *few, end.at(from), from - end.side * disc->dx, most, end.at(end.end()));
 }
@@ -324,9 +324,8 @@ std::vector<int> Buffer::find_occupied(std::vector<Particle> &copies, bool at_st
     beside(copies, x, [&](const Particle &c, double *d) {
       if (MathExtra::lensq3(d) >= reach * reach) return;
       if (species != FLUID)
-        error->one(FLERR,
-                   "{}: atom {} of a {} at {:g} {:g} {:g} is where fluid of its buffer should be",
-                   end.name, atom->tag[i], species == RIGID ? "wall" : "solid", x[0], x[1], x[2]);
+        error->one(FLERR, "{}: atom {} of a {} at {} is where fluid of its buffer should be",
+                   end.name, atom->tag[i], species == RIGID ? "wall" : "solid", place_text(x));
       is_occupied[&c - copies.data()] = 1;
     });
   }
@@ -412,9 +411,9 @@ void Buffer::refuse_overlap(int i, const std::vector<const OpenEnd *> &all_ends)
   for (const auto *other : all_ends)
     if (other != &end && other->holds(x))
       error->one(FLERR,
-                 "Atom {} at {:g} {:g} {:g} is in the buffers of fix {} and fix {}: keep them "
+                 "Atom {} at {} is in the buffers of fix {} and fix {}: keep them "
                  "apart, with keyword region",
-                 atom->tag[i], x[0], x[1], x[2], end.id, other->id);
+                 atom->tag[i], place_text(x), end.id, other->id);
 }
 
 // Before those that have left at the end: where flow turns before the next one of a row has come a

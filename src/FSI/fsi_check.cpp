@@ -20,6 +20,7 @@
 #include "force.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
+#include "fsi_keywords.h"
 #include "fsi_pack.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
@@ -444,12 +445,12 @@ void Check::warn_of_density()
   const double rest = dense[worst.type] / COMPRESSED;
   if (comm->me == 0)
     error->warning(FLERR,
-                   "Fix fsi: fluid atom {} (type {}) at {:g} {:g} {:g} has {:.3g} times its "
+                   "Fix fsi: fluid atom {} (type {}) at {} has {:.3g} times its "
                    "density at rest, {:g}, at step {}: fluids are to be compressed by a few per "
                    "cent at most. Look at the pressures and velocities that are given, at forces "
                    "that hold particles, and at sound",
-                   worst.tag, worst.type, worst.x[0], worst.x[1], worst.x[2], worst.value / rest,
-                   rest, update->ntimestep);
+                   worst.tag, worst.type, place_text(worst.x), worst.value / rest, rest,
+                   update->ntimestep);
 }
 
 void Check::inside_out()

@@ -83,6 +83,11 @@ int FSI::group_of(LAMMPS *lmp, const std::string &command, const std::string &na
   return igroup;
 }
 
+std::string FSI::place_text(const double *x)
+{
+  return fmt::format("{:.10g} {:.10g} {:.10g}", x[0], x[1], x[2]);
+}
+
 std::string FSI::list_of(const std::vector<std::string> &words)
 {
   std::string text;

@@ -63,6 +63,8 @@ namespace FSI {
 
   // one, two or three
   std::string list_of(const std::vector<std::string> &words);
+  // of a particle, in messages: far from the origin six digits do not tell two apart
+  std::string place_text(const double *x);
 
   class Keywords : protected Pointers {
    private:

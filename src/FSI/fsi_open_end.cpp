@@ -95,8 +95,8 @@ void OpenEnd::check_plane() const
   const double half_skin = 0.5 * neighbor->skin, last = end() - side * half_skin;
   if (domain->boundary[axis][side < 0.0] == 1 && (last < lo - little || last > hi + little))
     error->all(FLERR,
-               "{}: its buffer, {} to {:g}, and half the neighbor skin, {:g}, must be inside the "
-               "box, from {} to {}",
+               "{}: its buffer, {} to {:.10g}, and half the neighbor skin, {:g}, must be inside "
+               "the box, from {} to {}",
                name, at(position), end(), half_skin, lo, hi);
 }
 
@@ -131,9 +131,9 @@ double OpenEnd::value(int k, int i) const
 {
   const double x = given(k, i);
   if (!std::isfinite(x))
-    error->one(FLERR, "{}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", name,
+    error->one(FLERR, "{}: {} {} of atom {} at {} is no number{}", name,
                k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x,
-               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
+               atom->tag[i], place_text(atom->x[i]), given.see(k));
   return x;
 }
 

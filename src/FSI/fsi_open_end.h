@@ -110,7 +110,7 @@ namespace FSI {
     bool is_far(double p) const;
     double slow_rate() const, hat_at(double s, double spacings = 2.0) const;
     double end() const { return position - side * length; }    // of the buffer
-    std::string at(double place) const { return fmt::format("{} = {:g}", "xyz"[axis], place); }
+    std::string at(double place) const { return fmt::format("{} = {:.10g}", "xyz"[axis], place); }
 
    private:
     Region *region = nullptr;

@@ -22,6 +22,7 @@
 #include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
 #include "fsi_limits.h"
 #include "fsi_record.h"
 #include "lmptype.h"
@@ -86,8 +87,7 @@ std::string Stop::describe(const std::string &what, const Finding &all, When whe
                              : what);
   text += fmt::format(" on step {}", update->ntimestep);
   if (all.tag)
-    text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0],
-                        all.x[1], all.x[2]);
+    text += fmt::format(", atom {} (type {}) at {}", all.tag, all.type, place_text(all.x));
   if (all.other) text += fmt::format(", and atom {}", all.other);
   const Neighbor body = nearest_body(all);
   if (too_near(body)) {

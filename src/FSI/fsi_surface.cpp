@@ -16,6 +16,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fsi_keywords.h"
 #include "math_const.h"
 #include "math_extra.h"
 #include "region.h"
@@ -227,9 +228,8 @@ class OfSimplices : public Surface {
     });
     if (open == there.end()) return;
     const Vector &p = points[open->first.first];
-    error->all(FLERR,
-               "{} is not closed, or its faces do not agree on what is outside, at {:g} {:g} {:g}",
-               label, p[0], p[1], p[2]);
+    error->all(FLERR, "{} is not closed, or its faces do not agree on what is outside, at {}",
+               label, place_text(p.data()));
   }
 
   void find_normals()

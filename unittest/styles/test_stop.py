@@ -25,6 +25,16 @@ def error(done):
     return lines[0]
 
 
+def test_places_far_from_the_origin():
+    """Ten million spacings away the place is that of one particle, and short."""
+    x = lattice([4, 4], 0.001) + [1e4, 2.0, 0.0]
+    with Scene(x, dx=0.001, dt=1e-7) as s:
+        s.run(1)
+        s.run_lines("group one id 6", "velocity one set 1e3 0 0 units box")
+        with pytest.raises(Exception, match=r"atom 6 \(type 1\) at 10000\.0015 2\.00"):
+            s.run(1)
+
+
 def resume(scene, name="fluid"):
     text = scene.physics(coeff=False)
     return scene.setup() + "read_restart fsi_stop.restart\n" + (text if name in ("fluid", "gate") else total_lagrangian(text))
