@@ -170,6 +170,7 @@ def test_page_of_a_command_has_the_form_of_lammps():
         if page.startswith("pair"):
             assert "Mixing, shift, table, tail correction, restart, rRESPA info\n" in text, page
             assert page == "pair_fsi_solid" or ":lammps:`pair_modify` shift, table, and tail options" in words, page
+            assert page in ("pair_fsi_solid", "pair_fsi_grain") or "*pe* is 0: use :doc:`compute fsi/energy" in words, page
         elif page.startswith("fix"):
             assert "Restart, fix_modify, output, run start/stop, minimize info\n" in text, page
             assert "the *start/stop* keywords of the :lammps:`run` command" in words and ":lammps:`fix_modify` options" in words, page
