@@ -449,8 +449,8 @@ namespace FSI {
   };
 
   // Volumes of fluids and walls in laminar viscosity are those at rest, m/rho0: shifting lets
-  // density drift from the number of particles, and m/rho would make viscosity too small twice over.
-  // Solids are as large as they are.
+  // density drift from the number of particles, and m/rho would make viscosity too small twice
+  // over. Solids are as large as they are.
   //
   // Adds laminar viscosity to the force on i and, of images, on j; what it takes from their energy,
   // times 2 for images, which each pair meets from both sides.

@@ -260,7 +260,7 @@ def test_flow_between_pressures():
                          "fix i all fsi/inlet xlo 0 pressure v_p", f"fix o all fsi/outlet xhi {L} pressure 0 absorb 0"]) as s:
         go_on(s, 2500)    # 6 s, and what a start from rest lacks goes as exp(-pi^2 t/s)
         flow = []
-        for _ in range(60):    # single ones scatter by 4 %: columns pass the plane
+        for _ in range(120):    # single ones scatter by 4 %: columns pass the plane
             go_on(s, 50)
             flow.append((output_of(s, "i", 5), -output_of(s, "o", 5)))
         come, gone = np.mean(flow, axis=0) / U
