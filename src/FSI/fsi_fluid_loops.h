@@ -17,7 +17,7 @@
 // Pairs come as rows: a fluid particle i and neighbors j of one atom type, so that whatever depends
 // on types is constant in a row. The images of neighbors in a mirror wall are rows of their own.
 // One text serves numbers one by one and several side by side (fsi_pack.h); for several it is
-// compiled once per kernel (fsi_fluid_loops_*.cpp), one by one for all (fsi_fluid_loops_any.cpp).
+// compiled once per kernel (fsi_fluid_loops_*.cpp), one by one for all (fsi_fluid_rows.cpp).
 
 #ifndef LMP_FSI_FLUID_LOOPS_H
 #define LMP_FSI_FLUID_LOOPS_H
@@ -221,7 +221,6 @@ namespace FSI {
   [[noreturn]] void no_such_loop(const char *what, int kind, int flags);
   // packs: several pairs at a time, of all kinds but WITH_SOLID_FULL
   std::shared_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h, bool packs);
-  std::shared_ptr<FluidLoops> make_fluid_loops_any(int kernel, int dim, double h);
   std::shared_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);
   std::shared_ptr<FluidLoops> make_fluid_loops_quintic(int dim, double h);
   std::shared_ptr<FluidLoops> make_fluid_loops_wendland(int dim, double h);

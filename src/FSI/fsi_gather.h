@@ -27,9 +27,6 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class Domain;
-class LAMMPS;
-
 namespace FSI {
 
   // the elements of all ranks, in the order of the ranks; T: anything without pointers
@@ -99,12 +96,6 @@ namespace FSI {
     MPI_Allreduce(&local, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
     return all;
   }
-
-  // between runs: particles where they belong, with ghosts, whatever was created or moved
-  void renew_ghosts(LAMMPS *);
-
-  // 0 to 0.5, what tells particles with the same key apart on any number of ranks
-  double part_by_place(const double *x, const Domain *);
 
   // the largest limit between low and high that at most n keys of all ranks are below
   inline double limit_of(const std::vector<double> &key, double n, double low, double high,

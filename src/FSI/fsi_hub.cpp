@@ -274,3 +274,21 @@ void FSI::to_nearest_image(const Domain &box, double *d)
     if (box.periodicity[k] && std::fabs(d[k]) > box.prd_half[k])
       d[k] = std::remainder(d[k], box.prd[k]);
 }
+
+void FSI::renew_ghosts(LAMMPS *lmp)
+{
+  lmp->domain->pbc();
+  lmp->domain->reset_box();
+  lmp->comm->setup();
+  if (lmp->neighbor->style) lmp->neighbor->setup_bins();
+  lmp->comm->exchange();
+  lmp->comm->borders();
+}
+
+double FSI::part_by_place(const double *x, const Domain *domain)
+{
+  double part = 0.0, digit = 0.5;
+  for (int d = 0; d < domain->dimension; d++, digit *= 1.0e-4)
+    part += digit * (x[d] - domain->boxlo[d]) / domain->prd[d];
+  return part;
+}

@@ -281,6 +281,12 @@ namespace FSI {
   // arguments differ between releases of LAMMPS; boxes are orthogonal
   void to_nearest_image(const Domain &, double *d);
 
+  // between runs: particles where they belong, with ghosts, whatever was created or moved
+  void renew_ghosts(LAMMPS *);
+
+  // 0 to 0.5, what tells particles with the same key apart on any number of ranks
+  double part_by_place(const double *x, const Domain *);
+
 }    // namespace FSI
 }    // namespace LAMMPS_NS
 

@@ -27,8 +27,8 @@ PairStyle(fsi/grain,PairFSIGrain);
 
 namespace LAMMPS_NS {
 
-// Pressure and drag of fluids on spheres of other pair styles, and back (fsi_drag.h). What a sphere
-// meets is a sum over the fluid around it, weighted by V W; its force goes back to the same
+// Pressure and drag of fluids on spheres of other pair styles, and back (fsi_pair_laws.h). What a
+// sphere meets is a sum over the fluid around it, weighted by V W; its force goes back to the same
 // particles with the same weights.
 
 class PairFSIGrain : public Pair, public FSI::Part {

@@ -13,7 +13,6 @@
 #include "exceptions.h"
 #include "fsi_pair_laws.h"
 #include "fsi_classic_laws.h"
-#include "fsi_drag.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
 #include "fsi_pack.h"

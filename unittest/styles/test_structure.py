@@ -7,7 +7,7 @@ import pytest
 from fsi import paths
 
 SOURCES = paths.sources()
-LAWS = ["classic_laws", "drag", "gradient", "kernel", "pack", "pair_laws", "solid_laws", "tensor", "viscosity"]
+LAWS = ["classic_laws", "gradient", "kernel", "pack", "pair_laws", "solid_laws", "tensor", "viscosity"]
 
 
 def includes(name):

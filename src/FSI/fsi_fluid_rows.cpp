@@ -11,11 +11,13 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_fluid_loops.h"
+// The loops of pair_style fsi/fluid pair by pair, once for any kernel, for processors and compilers
+// without packs and for the paper's couplings; and the choice between these and those with packs.
+
+#include "fsi_fluid_rows.h"
 
 #include "exceptions.h"
 #include "fmt/format.h"
-#include "fsi_kernel.h"
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -29,7 +31,9 @@ std::shared_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h,
     return make_fluid_loops_wendland(dim, h);
   }
 #endif
-  return make_fluid_loops_any(kernel, dim, h);
+  if (dim == 2)
+    return std::make_shared<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
+  return std::make_shared<FluidLoopsOf<double, AnyKernel<3>>>(AnyKernel<3>(kernel, h));
 }
 
 void FSI::no_such_loop(const char *what, int kind, int flags)
