@@ -32,10 +32,6 @@ AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
   atom->rmass_flag = 1;
   atom->rho_flag = 1;
 
-  // strings with peratom variables to include in each AtomVec method
-  // strings cannot contain fields in corresponding AtomVec default strings
-  // order of fields in a string does not matter
-  // except: fields_data_atom & fields_data_vel must match data file
   // mass and body never change on a ghost; its density is refreshed by fix fsi, after the density
   // step
 
@@ -52,8 +48,6 @@ AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
   setup_fields();
 }
 
-// set local copies of all grow ptrs used by this class, except defaults
-// needed in replicate when 2 atom classes exist and it calls pack_restart()
 void AtomVecFSI::grow_pointers()
 {
   rmass = atom->rmass;
@@ -81,7 +75,6 @@ void AtomVecFSI::create_atom_post(int ilocal)
   rho[ilocal] = 0.0;
 }
 
-// check what AtomVec::data_atom() just unpacked
 void AtomVecFSI::data_atom_post(int ilocal)
 {
   if (rho[ilocal] < 0.0)
@@ -107,23 +100,13 @@ void AtomVecFSI::pack_data_pre(int ilocal)
                  "rest in the shape that they have. write_restart keeps all");
 }
 
-// assign an index to named atom property and return index
-// return -1 if name is unknown to this atom style
 int AtomVecFSI::property_atom(const std::string &name)
 {
-  if (name == "rho") return 0;
-  return -1;
+  return name == "rho" ? 0 : -1;
 }
 
-// pack per-atom data into buf for ComputePropertyAtom
-// index maps to data specific to this atom style
 void AtomVecFSI::pack_property_atom(int /*index*/, double *buf, int nvalues, int groupbit)
 {
-  const int *const mask = atom->mask;
-  const int nlocal = atom->nlocal;
-  int n = 0;
-  for (int i = 0; i < nlocal; i++) {
-    buf[n] = (mask[i] & groupbit) ? rho[i] : 0.0;
-    n += nvalues;
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    buf[i * nvalues] = (atom->mask[i] & groupbit) ? rho[i] : 0.0;
 }

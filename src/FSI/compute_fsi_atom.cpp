@@ -108,10 +108,9 @@ void ComputeFSIAtom::compute_peratom()
 
   for (int i = 0; i < atom->nlocal; i++) {
     const bool chosen = atom->mask[i] & groupbit;
-    Properties of;
+    double of[NQUANTITY] = {};
     if (chosen) find(i, of);
-    for (int k = 0; k < n; k++)
-      (n == 1 ? vector_atom[i] : array_atom[i][k]) = chosen ? value(quantity[k], i, of) : 0.0;
+    for (int k = 0; k < n; k++) (n == 1 ? vector_atom[i] : array_atom[i][k]) = of[quantity[k]];
   }
 }
 
@@ -125,69 +124,46 @@ PairFSIFluid *ComputeFSIAtom::needs_shear() const
   return fluid && (wanted || (tensor && fluid->has_laminar())) ? fluid : nullptr;
 }
 
-double ComputeFSIAtom::value(int what, int i, const Properties &of) const
-{
-  switch (what) {
-    case PRESSURE:
-      return of.p;
-    case DENSITY:
-      return of.rho;
-    case PSI:
-      return psi[i];
-    case VOLUME:
-      return of.volume;
-    case VONMISES:
-      return of.mises;
-    case PLASTIC:
-      return of.has_stress ? fix_stress->plastic_strain(i) : 0.0;
-    case SHEAR_RATE:
-      return of.shear_rate;
-    case VISCOSITY:
-      return of.viscosity;
-    case BONDS:
-      return solid_tl ? solid_tl->bonds(i) : 0.0;
-    default:
-      return of.sigma[what - SXX];
-  }
-}
-
 // Cauchy stress sigma = -p I + S, tension positive, of fluids S = 2 eta D; sigma_zz of plane strain
 // is -p - (S_xx + S_yy), of plane stress 0
-void ComputeFSIAtom::find(int i, Properties &of) const
+void ComputeFSIAtom::find(int i, double *of) const
 {
   const State &state = disc->state[atom->type[i]];
   const bool lagrangian = state.form == TOTAL_LAGRANGIAN;
-  of.has_stress = lagrangian || state.form == UPDATED_LAGRANGIAN;
+  const bool has_stress = lagrangian || state.form == UPDATED_LAGRANGIAN;
+  double *const sigma = of + SXX;
+  if (!psi.empty()) of[PSI] = psi[i];
+  if (has_stress && fix_stress) of[PLASTIC] = fix_stress->plastic_strain(i);
+  if (solid_tl) of[BONDS] = solid_tl->bonds(i);
   if (lagrangian) {
     const auto tl = solid_tl->stress(i);
-    of.p = tl.pressure();
-    of.rho = state.rho0 / tl.J;
-    of.volume = atom->rmass[i] * tl.J / state.rho0;
-    of.mises = von_mises(tl.sigma);
-    std::copy_n(tl.sigma, 6, of.sigma);
+    of[PRESSURE] = tl.pressure();
+    of[DENSITY] = state.rho0 / tl.J;
+    of[VOLUME] = atom->rmass[i] * tl.J / state.rho0;
+    of[VONMISES] = von_mises(tl.sigma);
+    std::copy_n(tl.sigma, 6, sigma);
     return;
   }
-  of.p = pressure_of(i, atom, *disc, *step);
-  of.rho = atom->rho[i];
-  of.volume = atom->rmass[i] / of.rho;
+  of[PRESSURE] = pressure_of(i, atom, *disc, *step);
+  of[DENSITY] = atom->rho[i];
+  of[VOLUME] = atom->rmass[i] / of[DENSITY];
   if (state.species == FLUID && shear) {
-    of.shear_rate = shear->rate(i);
-    of.viscosity = shear->viscosity_of(i);
+    of[SHEAR_RATE] = shear->rate(i);
+    of[VISCOSITY] = shear->viscosity_of(i);
   }
   if (!tensor) return;
-  std::fill_n(of.sigma, 6, 0.0);
-  if (of.has_stress) {
+  if (has_stress) {
     const double *const s = fix_stress->stress[i];
     const bool flat = disc->dim == 2;
-    std::copy_n(s, flat ? 2 : 6, of.sigma);
+    std::copy_n(s, flat ? 2 : 6, sigma);
     if (flat) {
-      of.sigma[2] = fix_stress->plane_stress ? of.p : -(s[0] + s[1]);
-      of.sigma[3] = s[2];
+      sigma[2] = fix_stress->plane_stress ? of[PRESSURE] : -(s[0] + s[1]);
+      sigma[3] = s[2];
     }
   }
-  if (state.species == FLUID && shear) shear->stress(i, of.viscosity, of.sigma);
-  of.mises = von_mises(of.sigma);    // a pressure changes nothing
-  for (int d = 0; d < 3; d++) of.sigma[d] -= of.p;
+  if (state.species == FLUID && shear) shear->stress(i, of[VISCOSITY], sigma);
+  of[VONMISES] = von_mises(sigma);    // a pressure changes nothing
+  for (int d = 0; d < 3; d++) sigma[d] -= of[PRESSURE];
 }
 
 double ComputeFSIAtom::memory_usage()

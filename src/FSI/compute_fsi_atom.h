@@ -45,7 +45,7 @@ class ComputeFSIAtom : public Compute {
   // clang-format off
   enum Quantity {
     PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC, BONDS,
-    SHEAR_RATE, VISCOSITY
+    SHEAR_RATE, VISCOSITY, NQUANTITY
   };
   // clang-format on
   std::vector<int> quantity;
@@ -59,15 +59,9 @@ class ComputeFSIAtom : public Compute {
 
   const FSI::Shear *shear;    // null: nothing needs it
 
-  struct Properties {
-    double p, rho, volume, mises, sigma[6];
-    double shear_rate = 0.0, viscosity = 0.0;    // of fluids
-    bool has_stress;
-  };
   class PairFSIFluid *needs_shear() const;
   void grow();
-  void find(int i, Properties &) const;
-  double value(int quantity, int i, const Properties &) const;
+  void find(int i, double *of) const;    // all quantities of an atom that something needs
 };
 
 }    // namespace LAMMPS_NS

@@ -38,8 +38,6 @@ class ComputeFSIEnergy : public Compute, public FSI::Part {
   FSI::Facts facts() const override { return FSI::only(&FSI::Facts::keeps_account); }
 
   static const char *name(int);    // of an entry of the vector
-
- private:
 };
 
 }    // namespace LAMMPS_NS

@@ -29,13 +29,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static bool has_period(const Domain *domain, int dim)
-{
-  return std::any_of(domain->periodicity, domain->periodicity + dim, [](int p) {
-    return p;
-  });
-}
-
 ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), sum{}, origin{}, reduced(false)
 {
@@ -104,7 +97,7 @@ void ComputeFSIForce::tally(double sign)
   const int nlocal = atom->nlocal, nall = nlocal + (force->newton_pair ? atom->nghost : 0);
   if (sign < 0.0) {
     std::fill_n(sum, (int) NSUM, 0.0);
-    if (update->setupflag || (neighbor->ago == 0 && has_period(domain, disc->dim))) find_body();
+    if (update->setupflag || (neighbor->ago == 0 && is_periodic(*domain))) find_body();
     reduced = false;
   }
   for (int i = 0; i < nall; i++) {

@@ -30,11 +30,11 @@
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
-#include "fsi_others.h"
 #include "fsi_part.h"
 #include "fsi_population.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "fsi_sight.h"
 #include "group.h"
 #include "neighbor.h"
@@ -66,7 +66,6 @@ struct FixFSI::Members {
   NumberDensity number_density;
   Clamps clamps;
   SurfaceDeficit surface_deficit;
-  Others others;
   Frame frame;
 
   Members(LAMMPS *lmp, FixFSI &fix) :
@@ -74,7 +73,7 @@ struct FixFSI::Members {
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, disc, step, parts), changes(lmp),
       population(lmp, disc, step), number_density(lmp, disc, step, ghosts, parts),
       clamps(lmp, disc, step), surface_deficit(lmp, disc, step, ledger, number_density),
-      others(lmp, disc), frame(lmp, step.walls)
+      frame(lmp, step.walls)
   {
   }
 };
@@ -214,7 +213,7 @@ bool FixFSI::has(LAMMPS *lmp, const Discretization *known)
 void FixFSI::check_pre_no(LAMMPS *lmp, const Discretization *known)
 {
   if (!Changes::in_first_step(lmp->update)) return;
-  Changes::check_pre_no(lmp, has(lmp, known) ? &there(lmp)->changes : nullptr);
+  if (!has(lmp, known) || !there(lmp)->changes.known_setup()) refuse(lmp->error, Refused::PRE_NO);
 }
 
 int FixFSI::setmask()
@@ -250,10 +249,10 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
-  members->others.init();
+  find_others();
   members->frame.init();
   check.materials();
-  for (int i = 0; i < atom->nlocal; i++) members->others.give_defaults(i);
+  for (int i = 0; i < atom->nlocal; i++) give_defaults(i, atom, disc);
   step.body_forces.find();
   check.init();
 }
@@ -338,7 +337,7 @@ void FixFSI::final_integrate()
   ledger.set_tally(update->dt);
   for (auto *p : parts) p->react();
   kick();
-  members->others.turn(update->dt);
+  turn();
 }
 
 // bring density and stress of local and ghost atoms to the time of the positions; not to advance,
@@ -385,7 +384,7 @@ void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.made(i);
-  if (!parts.empty()) members->others.give_defaults(i);    // not before the first run
+  if (!parts.empty()) give_defaults(i, atom, disc);    // not before the first run
   if (update->whichflag == 1 && disc.state[atom->type[i]].species == FLUID && !is_moved(i, lmp))
     error->one(FLERR,
                "Fluid atom {} was made during a run and is not in group {} of fix {}: no fix "

@@ -104,6 +104,11 @@ class FixFSI : public FSI::FixFields {
   // sums that pairs left on them
   FSI::Message forward, back;
   bool fresh_start() const;
+  // Particles of types without a material, which other pair styles are for, as grains: those of the
+  // group are moved, and turned if they can be; nothing else of the package looks at them
+  bool others_turn = false;
+  void find_others();
+  void turn() const;
   void update_state(bool);
 
  protected:

@@ -47,9 +47,8 @@ static constexpr double PRINT =
     0.95;    // causes whose limits differ by less than this are not worth a line each
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/dt"), cut(false), limits(new Limits(lmp)),
-    target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0),
-    restored(false)
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/dt"), limits(new Limits(lmp)), target(BIG),
+    cause(MAXIMUM)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   keywords.argument("interval").integer(interval, 1, 1);

@@ -62,19 +62,19 @@ class FixFSIDt : public Fix, public FSI::Part {
   FSI::Keywords keywords;
   int interval;
   double cfl, of_fluid, of_solid, low, high, growth;
-  double end;       // of the run
-  bool cut;         // it was
-  int automatic;    // number of sub-steps
+  double end;          // of the run
+  bool cut = false;    // it was
+  int automatic;       // number of sub-steps
   int check;
 
   const std::unique_ptr<FSI::Limits> limits;    // with the factors
   std::vector<double> limit;                    // of each cause: of step and sub-steps together
   double target;                                // smallest of these and of the bound
-  int cause, ruling;     // what sets the next step; last one that was printed
-  double dt, next_dt;    // of the last step taken, 0 = none; from the next step on
-  int next_substeps;
-  int warned;    // bits of causes
-  bool restored;
+  int cause, ruling = -1;            // what sets the next step; last one that was printed
+  double dt = 0.0, next_dt = 0.0;    // of the last step taken, 0 = none; from the next step on
+  int next_substeps = 0;
+  int warned = 0;    // bits of causes
+  bool restored = false;
 
   void find_outside() const;
   void find_limits();

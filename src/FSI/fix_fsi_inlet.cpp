@@ -321,22 +321,11 @@ double FixFSIInlet::compute_scalar()
 double FixFSIInlet::compute_vector(int n)
 {
   const Buffer &buffer = members->buffer;
-  switch (n) {
-    case 1:
-      return buffer.passed_in;
-    case 2:
-      return buffer.passed_out;
-    case 3:
-      return end.sum[OpenEnd::MASS_FLOW];
-    case 4:
-      return end.sum[OpenEnd::VOLUME_FLOW];
-    case 5:
-      return end.average(OpenEnd::MEAN_PRESSURE);
-    case 10:
-      return members->fullness.mean;
-    default:
-      return sum_of(n == 0 ? buffer.count() : buffer.push[n - 6], world);
-  }
+  const double of_all[] = {buffer.passed_in, buffer.passed_out, end.sum[OpenEnd::MASS_FLOW],
+                           end.sum[OpenEnd::VOLUME_FLOW], end.average(OpenEnd::MEAN_PRESSURE)};
+  if (n >= 1 && n <= 5) return of_all[n - 1];
+  if (n == 10) return members->fullness.mean;
+  return sum_of(n == 0 ? buffer.count() : buffer.push[n - 6], world);
 }
 
 Record FixFSIInlet::record() const

@@ -45,9 +45,8 @@ struct FixFSIReference::Members {
 };
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    BondStore(lmp, narg, arg), members(new Members(lmp, *this)), end_corrected(true),
-    damage(members->damage), self(members->self), swaps(members->swaps), has_record(false),
-    resting(false)
+    BondStore(lmp, narg, arg), members(new Members(lmp, *this)), damage(members->damage),
+    self(members->self), swaps(members->swaps)
 {
   restart_global = 1;
 }

@@ -55,7 +55,7 @@ class FixFSIReference : public FSI::BondStore {
   void restart(char *) override;
   double memory_usage() override;
 
-  bool end_corrected;    // volumes of the energy's integral with corrections at faces
+  bool end_corrected = true;    // volumes of the energy's integral with corrections at faces
   FSI::Damage &damage;
   FSI::SelfContact &self;
   FSI::Swaps &swaps;    // messages of solids
@@ -63,8 +63,8 @@ class FixFSIReference : public FSI::BondStore {
  private:
   std::string made;    // how the bonds were: keywords of pair_style fsi/solid/tl; empty: none yet
   std::string as_now() const;
-  bool has_record;
-  bool resting;    // no pair_style fsi/solid/tl
+  bool has_record = false;
+  bool resting = false;    // no pair_style fsi/solid/tl
 
   void find_planes();
   void refuse_other_materials() const;

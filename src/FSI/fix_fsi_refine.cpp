@@ -24,7 +24,6 @@
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
-#include "fsi_others.h"
 #include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_refine.h"
@@ -57,38 +56,32 @@ static constexpr double SAME = 1.0e-12;      // what comes from one material
 static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label("Fix fsi/refine"), every(0), settle_steps(30), finest_dx(0.0),
-    zones(new Zones(lmp, label)), total{}, last_event(-1), warned(false), message(nullptr), local{}
+    Fix(lmp, narg, arg), label("Fix fsi/refine"), zones(new Zones(lmp, label))
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", label);
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/refine", error);
   every = integer(lmp, label + " N", arg[3], 1);
   level_of.assign(atom->ntypes + 1, -1);
+  static const std::vector<std::string> keys = {"types", "finest", "region", "distance", "settle"};
   for (int k = 4; k < narg;) {
     const std::string key = arg[k++];
     std::vector<std::string> values;
-    const auto is_key = [](const std::string &word) {
-      return word == "types" || word == "region" || word == "distance" || word == "settle" ||
-          word == "finest";
-    };
-    while (k < narg && !is_key(arg[k])) values.emplace_back(arg[k++]);
+    while (k < narg && std::find(keys.begin(), keys.end(), arg[k]) == keys.end())
+      values.emplace_back(arg[k++]);
+    if ((key == "settle" || key == "finest") && values.size() != 1)
+      utils::missing_cmd_args(FLERR, "fix fsi/refine " + key, error);
     if (key == "types")
       read_types(values);
     else if (key == "region")
       zones->read_regions(values);
     else if (key == "distance")
       zones->read_distances(values);
-    else if (key == "settle") {
-      if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine settle", error);
+    else if (key == "settle")
       settle_steps = integer(lmp, label + " settle", values[0], 0, 1000);
-    } else if (key == "finest") {
-      if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine finest", error);
+    else if (key == "finest")
       finest_dx = numeric(lmp, label + " finest", values[0], Range::above(0.0));
-    } else
-      error->all(
-          FLERR,
-          "Unknown fix fsi/refine keyword {}: expected types, finest, region, distance or settle",
-          key);
+    else
+      error->all(FLERR, "Unknown fix fsi/refine keyword {}: expected {}", key, list_of(keys));
   }
   if (finest_dx > 0.0 ? !types.empty() : types.size() < 2)
     error->all(FLERR,
@@ -339,7 +332,7 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
 void FixFSIRefine::check_mass(int i) const
 {
   const int t = atom->type[i];
-  const double m = atom->rmass[i], usual = Others::lattice_mass(*disc, t);
+  const double m = atom->rmass[i], usual = lattice_mass(*disc, t);
   if (m > 0.6 * usual && m < 1.6 * usual) return;
   error->one(FLERR,
              "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level. Commands "

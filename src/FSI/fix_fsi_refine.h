@@ -72,8 +72,8 @@ class FixFSIRefine : public Fix {
   enum Wish { SPLIT = 1 << 16, MERGE = 1 << 17, EAGER = 1 << 18 };
 
   const std::string label;
-  int every, settle_steps;
-  double finest_dx;                           // from which types follow; 0: they are given
+  int every, settle_steps = 30;
+  double finest_dx = 0.0;                     // from which types follow; 0: they are given
   std::vector<int> types, level_of;           // from the coarsest on; per type, -1: none of them
   const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 on are
   const FSI::Discretization *disc = nullptr;
@@ -82,16 +82,16 @@ class FixFSIRefine : public Fix {
   FSI::Population *population = nullptr;
   std::vector<class FixFSIInlet *> open_ends;
   std::vector<std::array<double, 3>> directions;    // of splitting
-  double total[NTOTAL];
-  bigint last_event;
-  bool warned;    // in this run
+  double total[NTOTAL] = {};
+  bigint last_event = -1;
+  bool warned = false;    // in this run
 
   // of one event
   // per particle, local and ghost: see Wish; name; direction, from 1 on, 0: it does not split
   std::vector<tagint> carried, partner, heading;
   std::vector<int> chosen;    // per local one: index of its partner
-  std::vector<tagint> *message;
-  double local[NTOTAL];
+  std::vector<tagint> *message = nullptr;
+  double local[NTOTAL] = {};
 
   int finest() const { return (int) types.size() - 1; }
   void check_mass(int i) const;

@@ -52,9 +52,7 @@ static std::string word(const std::string &text)
 }
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), profile(new Profile()), energy(nullptr), fp(nullptr), first_step(0),
-    natoms(0), first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{},
-    collected(-1), output{}
+    Fix(lmp, narg, arg), profile(new Profile())
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
   if (igroup)
@@ -293,38 +291,36 @@ std::string FixFSIReport::what_to_change(double loop, const double *mean, double
   const int substeps = step->substeps;
   const double of_fluid = mean[Profile::FLUID_FORCES], of_solids = mean[Profile::SOLID_FORCES];
   struct Hint {
-    bool helps;
     const char *name;
-    double seconds, usual;
+    double seconds;
     std::string text;
   };
-  std::vector<Hint> hints = {
-      {waits, "waiting", busiest - work, 0.05,
-       fmt::format("the busiest rank works {:.2f} times as long as the mean: fix balance",
-                   busiest / work)},
-      {!waits, "communication", mean[Profile::MESSAGES], 0.25,
-       fmt::format("{} particles on each rank: fewer ranks", natoms / comm->nprocs)},
-      {true, "neighbor lists", mean[NEIGH], 0.2,
-       fmt::format("new ones every {:.3g} steps: a {} skin than {:.3g} dx", a_list,
-                   a_list < 10.0 ? "larger" : "smaller", skin)},
-      {true, "output", mean[OUTPUT], 0.1,
-       fmt::format("thermo every {} steps, {} dumps: less often", lmp->output->thermo_every,
-                   lmp->output->ndump)},
-      {substeps > 1, "force of solids", of_solids, 0.4,
-       fmt::format("{} sub-steps in each step: fewer particles through the body, a softer body",
-                   substeps)},
-      {substeps == 1, "force of solids", of_solids, 0.4, "fewer particles through the body"},
-      {facts_of_fluids(lmp).shift_every == 1, "density", mean[Profile::DENSITY], 0.3,
-       "shifting in every step: shift/every 4"},
-      {disc->kernel == QUINTIC, "force of fluid", of_fluid, 0.3,
-       "kernel quintic: wendland is faster"},
-      {skin > 1.5, "force of fluid", of_fluid, 0.3,
-       fmt::format("a skin of {:.3g} dx: neighbor {:.2g} bin", skin, 0.3 * disc->dx)}};
-  hints.erase(std::remove_if(hints.begin(), hints.end(),
-                             [loop](const Hint &h) {
-                               return !h.helps || h.seconds <= h.usual * loop;
-                             }),
-              hints.end());
+  std::vector<Hint> hints;
+  const auto add = [&](bool helps, const char *name, double seconds, double usual,
+                       const std::string &text) {
+    if (helps && seconds > usual * loop) hints.push_back({name, seconds, text});
+  };
+  add(waits, "waiting", busiest - work, 0.05,
+      fmt::format("the busiest rank works {:.2f} times as long as the mean: fix balance",
+                  busiest / work));
+  add(!waits, "communication", mean[Profile::MESSAGES], 0.25,
+      fmt::format("{} particles on each rank: fewer ranks", natoms / comm->nprocs));
+  add(true, "neighbor lists", mean[NEIGH], 0.2,
+      fmt::format("new ones every {:.3g} steps: a {} skin than {:.3g} dx", a_list,
+                  a_list < 10.0 ? "larger" : "smaller", skin));
+  add(true, "output", mean[OUTPUT], 0.1,
+      fmt::format("thermo every {} steps, {} dumps: less often", lmp->output->thermo_every,
+                  lmp->output->ndump));
+  add(substeps > 1, "force of solids", of_solids, 0.4,
+      fmt::format("{} sub-steps in each step: fewer particles through the body, a softer body",
+                  substeps));
+  add(substeps == 1, "force of solids", of_solids, 0.4, "fewer particles through the body");
+  add(facts_of_fluids(lmp).shift_every == 1, "density", mean[Profile::DENSITY], 0.3,
+      "shifting in every step: shift/every 4");
+  add(disc->kernel == QUINTIC, "force of fluid", of_fluid, 0.3,
+      "kernel quintic: wendland is faster");
+  add(skin > 1.5, "force of fluid", of_fluid, 0.3,
+      fmt::format("a skin of {:.3g} dx: neighbor {:.2g} bin", skin, 0.3 * disc->dx));
   std::stable_sort(hints.begin(), hints.end(), [](const Hint &a, const Hint &b) {
     return a.seconds > b.seconds;
   });

@@ -52,28 +52,28 @@ class FixFSIReport : public Fix, public FSI::Part {
   const FSI::Discretization *disc = nullptr;      // of fix fsi
   const FSI::StepState *step = nullptr;
   const FSI::Population *population = nullptr;
-  class ComputeFSIEnergy *energy;
-  FILE *fp;    // of rank 0; null: the log
+  class ComputeFSIEnergy *energy = nullptr;
+  FILE *fp = nullptr;    // of rank 0; null: the log
 
   using Vector = std::array<double, 3>;
   enum Giver { GRAVITY, WALLS, HELD, NGIVER };
   using Impulses = std::array<Vector, NGIVER>;
 
-  bigint first_step, natoms;    // natoms: without what came in through open ends
-  double first_time;
+  bigint first_step = 0, natoms = 0;    // natoms: without what came in through open ends
+  double first_time = 0.0;
   struct Gravity {
     const double *g;
     double mass;    // of its group, all ranks
   };
   std::vector<Gravity> fields;
-  bool any_held;
+  bool any_held = false;
   std::vector<int> held;         // local atoms that fix fsi does not integrate, as of
-  bigint listed;                 // this build of the neighbor lists
-  Vector momentum;               // at the start, of all ranks
-  Impulses impulse;              // of this rank
+  bigint listed = -1;            // this build of the neighbor lists
+  Vector momentum = {};          // at the start, of all ranks
+  Impulses impulse = {};         // of this rank
   std::vector<double> ledger;    // at the start
-  bigint collected;              // step of what follows
-  Vector output;
+  bigint collected = -1;         // step of what follows
+  Vector output = {};
 
   void begin();
   bigint particles() const;

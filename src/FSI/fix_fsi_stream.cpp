@@ -38,8 +38,7 @@ using namespace FSI;
 
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"),
-    velocity(new Values(lmp, "fix fsi/stream", 3)), low(0.0), high(0.0), region(nullptr),
-    last_step(-1), given{}, work(0.0)
+    velocity(new Values(lmp, "fix fsi/stream", 3))
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);

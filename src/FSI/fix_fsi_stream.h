@@ -56,21 +56,21 @@ class FixFSIStream : public Fix, public FSI::Part {
   FSI::Keywords keywords;
   std::string region_id;
   const std::unique_ptr<FSI::Values> velocity;
-  int along;                    // axis
-  double rate, density_rate;    // 1/time, in the middle of the zone
-  double low, high;             // ends of the zone along the axis
-  class Region *region;
+  int along;                       // axis
+  double rate, density_rate;       // 1/time, in the middle of the zone
+  double low = 0.0, high = 0.0;    // ends of the zone along the axis
+  class Region *region = nullptr;
   const FSI::Discretization *disc = nullptr;
   const FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
-  bigint last_step;    // of the weights
+  bigint last_step = -1;    // of the weights
   struct Member {
     int i = 0;
     double weight = 0.0;    // 0 outside of the zone and at its ends, 1 in its middle
   };
   std::vector<Member> zone;    // local fluid in and near it, as of the last list
-  double given[4];             // force on the fluid and its power, this rank's part
-  double work;                 // since the fix was defined, likewise
+  double given[4] = {};        // force on the fluid and its power, this rank's part
+  double work = 0.0;           // since the fix was defined, likewise
 
   void find_zone();
   double in_zone(int i) const;

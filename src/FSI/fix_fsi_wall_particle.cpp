@@ -49,8 +49,7 @@ static constexpr double AUTO = -1.0;
 enum { AS_PRESET, MEAN, LINEAR };    // pressure
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr),
-    swaps(new Swaps(lmp)), sum(nullptr), nsum(0), turns(false), force_on{}
+    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), swaps(new Swaps(lmp))
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);

@@ -64,7 +64,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
                    // as the fluid has tension or not
   bool linear = false;    // extrapolates with the gradient, not a mean
   std::vector<class FixFSIMove *> movers;
-  double **before;    // velocity at the last step, and whether there was one
+  double **before = nullptr;    // velocity at the last step, and whether there was one
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
   std::vector<int> members;                   // the group's particles, local and ghost
@@ -76,16 +76,17 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   // if that is not beyond the kernel's support
   template <class F> void for_pairs(size_t level, double cutsq, F f) const;
   void sum_up();
-  double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
-                   // W, d d W, p d W, d = x_wall - x; with turns of d W
-  int nsum, first_moment, first_stiffness;
-  bool turns;                      // walls that fluid sticks to may
+  double **sum =
+      nullptr;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
+                  // W, d d W, p d W, d = x_wall - x; with turns of d W
+  int nsum = 0, first_moment, first_stiffness;
+  bool turns = false;              // walls that fluid sticks to may
   std::vector<int> first, near;    // of each local member, where its neighbors in the wall begin;
                                    // these
   void find_near();
   void find_acceleration(int i, double *a) const;
   void add_turn(int m, const double *way, double *v) const;
-  double force_on[3];    // this group, this rank's part
+  double force_on[3] = {};    // this group, this rank's part
 
   template <int D>
   double beyond_mean(const double *moments, double W, double p, double rho, const double *a) const;

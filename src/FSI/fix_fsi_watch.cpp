@@ -20,6 +20,7 @@
 #include "fsi_find.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
+#include "fsi_rows.h"
 #include "fsi_stop.h"
 #include "group.h"
 #include "neigh_list.h"
@@ -49,8 +50,7 @@ struct FixFSIWatch::Row {
 };
 enum { NEAREST, DENSEST, GROWTH, GONE, NROW };
 
-FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), energy_before(-1.0), violations(0)
+FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
   for (int k = 4; k < narg; k++)
@@ -156,16 +156,13 @@ void FixFSIWatch::look_at_pairs()
     for (int ii = 0; list && ii < list->inum; ii++) {
       const int i = list->ilist[ii];
       if (!(atom->mask[i] & groupbit)) continue;
-      for (int jj = 0; jj < list->numneigh[i]; jj++) {
-        const int j = list->firstneigh[i][jj] & NEIGHMASK;
-        const double *const xi = atom->x[i], *const xj = atom->x[j];
-        const double a = xi[0] - xj[0], b = xi[1] - xj[1], c = xi[2] - xj[2];
-        const double rsq = a * a + b * b + c * c;
+      const FSI::Row row = {i, list->numneigh[i], list->firstneigh[i]};
+      for_near(row, atom->x, 3, HUGE_VAL, [&](int j, const double *, double rsq) {
         const double apart = spacing_between(resolution[atom->type[i]], resolution[atom->type[j]]);
-        if (rsq >= smallest * apart * apart) continue;
+        if (rsq >= smallest * apart * apart) return;
         smallest = rsq / (apart * apart);
         enter(NEAREST, i, std::sqrt(rsq) / apart, j);
-      }
+      });
     }
   }
 }

@@ -56,9 +56,9 @@ class FixFSIWatch : public Fix, public FSI::Part {
   const FSI::StepState *step = nullptr;
 
   int interval, warn;
-  bool loses;              // does the script say how many?
-  double energy_before;    // kinetic
-  bigint violations;
+  bool loses;                     // does the script say how many?
+  double energy_before = -1.0;    // kinetic
+  bigint violations = 0;
 
   void enter(int row, int i, double value, int j = -1);
   void look_at_particles(double &kinetic, double &little);

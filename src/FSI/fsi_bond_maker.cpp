@@ -198,7 +198,7 @@ template <int D> double BondMaker::measure(int i, int j, double cut, double *X) 
 {
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const int *const type = atom->type;
-  const bool periodic = bonds.is_periodic();
+  const bool periodic = is_periodic(*domain);
   double rsq = 0.0;
   bool halfway = false;    // round the box: the image on the other side is as near
   for (int a = 0; a < D; a++) {

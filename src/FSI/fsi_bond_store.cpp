@@ -78,13 +78,6 @@ bool BondStore::is_solid(int i) const
   return disc->state[atom->type[i]].species == SOLID;
 }
 
-bool BondStore::is_periodic() const
-{
-  return std::any_of(domain->periodicity, domain->periodicity + domain->dimension, [](int p) {
-    return p != 0;
-  });
-}
-
 int BondStore::nplace() const
 {
   return keeps_places ? domain->dimension : 0;
@@ -182,7 +175,7 @@ void BondStore::end_taking()
 int BondStore::find_partner(int i, tagint tag) const
 {
   const int j = atom->map(tag);
-  return j < 0 || !is_periodic() ? j : image_at(atom->x[i], j);
+  return j < 0 || !is_periodic(*domain) ? j : image_at(atom->x[i], j);
 }
 
 // of atom j; -1: a ghost that is not here
@@ -239,7 +232,7 @@ void BondStore::resolve()
     solids.push_back(i);
     int *const of_i = &local[first(i)], n = count(i);
     for (int k = 0; k < n; k++) of_i[k] = find_partner(i, partner_tags(i)[k]);
-    if (is_periodic()) follow_long_bonds(i, of_i);
+    if (is_periodic(*domain)) follow_long_bonds(i, of_i);
     for (int k = 0; k < n; k++) {
       const tagint t = partner_tags(i)[k];
       const int j = of_i[k], bits = planes(i, k);

@@ -56,7 +56,6 @@ namespace FSI {
     void choose(bool with_images, bool with_places);    // before there are any
     bool any() const;                                   // on any rank: all ask together
     bool is_solid(int i) const;
-    bool is_periodic() const;    // without there is one of each particle
 
     // Of local atom i: has it bonds, or had it; 0 bonds: a solid only since
     bool has(int i) const { return slot[i] >= 0; }

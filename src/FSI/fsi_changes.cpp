@@ -132,8 +132,3 @@ void Changes::check_pre_no() const
 {
   if (in_first_step(update) && there != present()) refuse(error, Refused::PRE_NO);
 }
-
-void Changes::check_pre_no(LAMMPS *lmp, const Changes *known)
-{
-  if (!known || known->there.empty()) refuse(lmp->error, Refused::PRE_NO);
-}

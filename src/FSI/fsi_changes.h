@@ -41,9 +41,8 @@ namespace FSI {
 
     // what a run points to; what fixes that are gone had of particles is not of now any more
     void set_up();
-    // in its first step: an error if it is another one; of pairs: if theirs are not known
-    void check_pre_no() const;
-    static void check_pre_no(LAMMPS *, const Changes *);
+    bool known_setup() const { return !there.empty(); }
+    void check_pre_no() const;    // in its first step: an error if it is another one
     static bool in_first_step(const class Update *);
 
    private:

@@ -324,11 +324,8 @@ void Check::before_substeps(const std::vector<int> &solids)
   const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   double *to = kept.data();
   for (const int i : solids) {
-    for (int d = 0; d < 3; d++) {
-      to[d] = x[i][d];
-      to[3 + d] = v[i][d];
-    }
-    to += 6;
+    to = std::copy_n(x[i], 3, to);
+    to = std::copy_n(v[i], 3, to);
   }
 }
 

@@ -105,14 +105,8 @@ void Clamps::find_members()
   members.clear();
   of_fixes([this](size_t first, size_t last) {
     const auto of = places_by_id(first, last);
-    const RigidBodies &rigid = *bodies[first].fix;
-    for (size_t k = first; k < last; k++) {
-      bodies[k].displace = rigid.displace();
-      bodies[k].image = rigid.image();
-      bodies[k].flags = rigid.flags();
-    }
     for (int i = 0; i < atom->nlocal; i++) {
-      const auto at = of.find(rigid.id_of(i));
+      const auto at = of.find(bodies[first].fix->id_of(i));
       if (at != of.end()) members.push_back({i, (int) at->second});
     }
   });
@@ -204,7 +198,7 @@ void Clamps::kick(Body &b, double t, const double *force_and_torque) const
 void Clamps::arm(const Member &m, double *r) const
 {
   const Body &b = bodies[m.body];
-  MathExtra::matvec(b.ex, b.ey, b.ez, b.displace[m.i], r);
+  MathExtra::matvec(b.ex, b.ey, b.ez, b.fix->displace()[m.i], r);
   if (domain->dimension == 2) r[2] = 0.0;
 }
 
@@ -215,7 +209,7 @@ void Clamps::place(const std::vector<Member> &list) const
     double r[3], x[3], around[3];
     arm(m, r);
     MathExtra::add3(b.x, r, x);
-    domain->unmap_inv(x, b.image[m.i]);
+    domain->unmap_inv(x, b.fix->image()[m.i]);
     MathExtra::cross3(b.omega, r, around);
     for (int d = 0; d < domain->dimension; d++) {
       atom->x[m.i][d] = x[d];
@@ -233,7 +227,7 @@ void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool w
     for (int d = 0; d < domain->dimension; d++) push[d] = f[m.i][d];
     arm(m, r);
     MathExtra::cross3(r, push, torque);
-    const int *const flags = bodies[m.body].flags;
+    const int *const flags = bodies[m.body].fix->flags();
     if (whole && flags && flags[m.i] & RigidBodies::TORQUE)
       MathExtra::add3(torque, atom->torque[m.i], torque);
     for (int d = 0; d < 3; d++) {

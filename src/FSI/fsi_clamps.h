@@ -58,13 +58,10 @@ namespace FSI {
    private:
     struct Body : BodyNow {
       const RigidBodies *fix;
-      double free[6];                   // 0: components of force and torque left out
-      const double *const *displace;    // of atoms, from the center in the body's axes
-      const imageint *image;            // of atoms
-      const int *flags;                 // of atoms, if some have sizes, or null
-      BodyMotion start;                 // of the step
-      double middle[3];                 // x, in the middle of the step
-      double outside[6];                // force and torque of what is no solid, in this step
+      double free[6];       // 0: components of force and torque left out
+      BodyMotion start;     // of the step
+      double middle[3];     // x, in the middle of the step
+      double outside[6];    // force and torque of what is no solid, in this step
     };
     struct Member {
       int i, body;    // local atom

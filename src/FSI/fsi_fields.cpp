@@ -274,11 +274,6 @@ const double *FSI::restart_values(const double *extra, int nth)
    a fix with fields
 ------------------------------------------------------------------------- */
 
-FixFields::FixFields(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fields(lmp), grows(false), restarts(false)
-{
-}
-
 FixFields::~FixFields()
 {
   if (!modify->get_fix_by_id(id)) return;
@@ -368,14 +363,14 @@ template <class Visit> void Message::visit(int i, Visit visit) const
     if ((p.species & kind) && (!p.when || *p.when)) visit(p.at(i), p.n);
 }
 
-int Message::pack(int n, const int *list, double *buf) const
+int Message::pack(int n, const int *list, int first, double *buf) const
 {
-  double *const first = buf;
+  double *const begin = buf;
   for (int k = 0; k < n; k++)
-    visit(list[k], [&](const double *a, int m) {
+    visit(list ? list[k] : first + k, [&](const double *a, int m) {
       buf = std::copy_n(a, m, buf);
     });
-  return buf - first;
+  return buf - begin;
 }
 
 void Message::unpack(int n, int first, const double *buf) const
@@ -385,16 +380,6 @@ void Message::unpack(int n, int first, const double *buf) const
       std::copy_n(buf, m, a);
       buf += m;
     });
-}
-
-int Message::pack_back(int n, int first, double *buf) const
-{
-  double *const begin = buf;
-  for (int i = first; i < first + n; i++)
-    visit(i, [&](const double *a, int m) {
-      buf = std::copy_n(a, m, buf);
-    });
-  return buf - begin;
 }
 
 void Message::add_up(int n, const int *list, const double *buf) const

@@ -113,10 +113,10 @@ namespace FSI {
              const bool *when = nullptr);
     int size() const;    // at most, of an atom
 
-    int pack(int n, const int *list, double *buf) const;
+    // of those listed, or null: of n from the first one on
+    int pack(int n, const int *list, int first, double *buf) const;
     void unpack(int n, int first, const double *buf) const;
     // back to their owners, who add them up
-    int pack_back(int n, int first, double *buf) const;
     void add_up(int n, const int *list, const double *buf) const;
 
    private:
@@ -134,7 +134,7 @@ namespace FSI {
   // A fix with fields, which may send messages.
   class FixFields : public Fix {
    public:
-    FixFields(LAMMPS *, int, char **);
+    FixFields(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), fields(lmp) {}
     ~FixFields() override;
     void grow_arrays(int nmax) override { fields.grow_lasting(nmax); }
     void copy_arrays(int i, int j, int) override { fields.copy(i, j); }
@@ -147,7 +147,7 @@ namespace FSI {
     int maxsize_restart() override { return fields.restart_size(); }
     int pack_forward_comm(int n, int *list, double *buf, int, int *) override
     {
-      return sent->pack(n, list, buf);
+      return sent->pack(n, list, 0, buf);
     }
     void unpack_forward_comm(int n, int first, double *buf) override
     {
@@ -155,7 +155,7 @@ namespace FSI {
     }
     int pack_reverse_comm(int n, int first, double *buf) override
     {
-      return sent->pack_back(n, first, buf);
+      return sent->pack(n, nullptr, first, buf);
     }
     void unpack_reverse_comm(int n, int *list, double *buf) override { sent->add_up(n, list, buf); }
     double memory_usage() override { return fields.memory_usage(); }
@@ -172,7 +172,7 @@ namespace FSI {
 
    private:
     friend class Ghosts;
-    bool grows, restarts;    // with LAMMPS' own arrays
+    bool grows = false, restarts = false;    // with LAMMPS' own arrays
     void add_callback(int kind, int *&booked, int &n);
   };
 

@@ -24,6 +24,7 @@
 #include "fsi_preset.h"
 #include "fsi_record.h"
 #include "lammps.h"
+#include "math_const.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -34,6 +35,7 @@
 
 using namespace LAMMPS_NS;
 using namespace FSI;
+using MathConst::MY_PI;
 
 void Discretization::resolve(const std::vector<double> &spacing)
 {
@@ -229,6 +231,37 @@ void FSI::set_density(int i, double rho, Atom *atom, const Discretization &disc,
   if (ledger.kept) ledger.energy_out[term] += before - stored(i, atom, disc);
 }
 
+double FSI::lattice_mass(const Discretization &disc, int type)
+{
+  const State &s = disc.state[type];
+  const Resolution &r = disc.resolution[type];
+  if (s.form != TOTAL_LAGRANGIAN) return s.rho0 / r.psi_bulk;
+  return s.rho0 * (disc.dim == 2 ? r.dx * r.dx : r.dx * r.dx * r.dx);
+}
+
+// An atom that was never given a mass or a density gets those of the stress-free lattice: of a
+// body that keeps its reference the cell's, which is exact; else 1/psi, whose sum is. Without a
+// material it has one number for the checks of all densities: mass over volume
+void FSI::give_defaults(int i, Atom *atom, const Discretization &disc)
+{
+  const int type = atom->type[i];
+  const State &s = disc.state[type];
+  const double r = atom->radius_flag ? atom->radius[i] : 0.0;
+  if (s.species == NONE) {
+    const double volume = r == 0.0 ? 1.0 / disc.psi_bulk
+        : disc.dim == 2            ? MY_PI * r * r
+                                   : 4.0 / 3.0 * MY_PI * r * r * r;
+    atom->rho[i] = atom->rmass[i] / volume;
+    return;
+  }
+  // that of atom_style sphere for all new particles, whatever they are; releases differ in its
+  // last bit
+  const bool of_sphere =
+      atom->radius_flag && std::fabs(atom->rmass[i] / (MY_PI / 6.0) - 1.0) < 1e-15;
+  if (atom->rmass[i] == 0.0 || of_sphere) atom->rmass[i] = lattice_mass(disc, type);
+  if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
+}
+
 bool FSI::is_moved(int i, const LAMMPS *lmp)
 {
   // not get_fix_list(), which makes the list anew: who asks in set_arrays() is called from a loop
@@ -242,10 +275,9 @@ bool FSI::is_moved(int i, const LAMMPS *lmp)
 
 bool FSI::has_open_ends(const LAMMPS *lmp)
 {
-  const auto fixes = fixes_of<Part>(lmp);
-  return std::any_of(fixes.begin(), fixes.end(), [](const Part *p) {
-    return p->rank() == Part::OPEN_ENDS;
-  });
+  for (const auto *p : fixes_of<Part>(lmp))
+    if (p->rank() == Part::OPEN_ENDS) return true;
+  return false;
 }
 
 static Facts facts_of(LAMMPS *lmp, Facts::Style least, Facts::Style most)
@@ -273,6 +305,11 @@ void FSI::to_nearest_image(const Domain &box, double *d)
   for (int k = 0; k < 3; k++)
     if (box.periodicity[k] && std::fabs(d[k]) > box.prd_half[k])
       d[k] = std::remainder(d[k], box.prd[k]);
+}
+
+bool FSI::is_periodic(const Domain &box)
+{
+  return std::count(box.periodicity, box.periodicity + box.dimension, 0) < box.dimension;
 }
 
 void FSI::renew_ghosts(LAMMPS *lmp)

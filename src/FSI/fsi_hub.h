@@ -164,22 +164,6 @@ namespace FSI {
       threads ? threads(n, loop) : loop(0, n);
       return parts;
     }
-    // largest of each of N numbers of i, for i below n; 0 at least
-    template <size_t N, class Of> std::array<double, N> largest(int n, Of of) const
-    {
-      using Numbers = std::array<double, N>;
-      const auto raise = [](Numbers &to, const Numbers &by) {
-        for (size_t k = 0; k < N; k++) to[k] = std::max(to[k], by[k]);
-      };
-      const auto parts = in_parts(n, [=](int first, int last) {
-        Numbers here = {};
-        for (int i = first; i < last; i++) raise(here, of(i));
-        return here;
-      });
-      Numbers all = {};
-      for (const auto &part : parts) raise(all, part.second);
-      return all;
-    }
     // those i below n for which choose(i), in order
     template <class Choose> std::vector<int> those(int n, Choose choose) const
     {
@@ -267,6 +251,9 @@ namespace FSI {
   double stored(int i, const Atom *, const Discretization &);
   // the energy that it takes is in the balance
   void set_density(int i, double rho, Atom *, const Discretization &, Ledger &, Ledger::Term);
+  // mass of a particle of this type's stress-free lattice; mass and density, where there are none
+  double lattice_mass(const Discretization &, int type);
+  void give_defaults(int i, Atom *, const Discretization &);
   bool is_moved(int i, const LAMMPS *);    // by fix fsi or by another that integrates
 
   // the rows of a per-atom array, which LAMMPS allocates in one piece, without the way through its
@@ -280,6 +267,7 @@ namespace FSI {
   // The shortest of a difference's periodic images, as Domain::minimum_image() gives it, whose
   // arguments differ between releases of LAMMPS; boxes are orthogonal
   void to_nearest_image(const Domain &, double *d);
+  bool is_periodic(const Domain &);    // along any axis: else there is one image of each particle
 
   // between runs: particles where they belong, with ghosts, whatever was created or moved
   void renew_ghosts(LAMMPS *);

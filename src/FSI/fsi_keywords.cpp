@@ -415,11 +415,6 @@ std::vector<Keywords::Effect> Keywords::effects() const
    numbers and variables
 ------------------------------------------------------------------------- */
 
-Values::Values(LAMMPS *lmp, const std::string &command, int n) :
-    Pointers(lmp), command(command), list(n), each(nullptr), nmax(0)
-{
-}
-
 Values::~Values()
 {
   memory->destroy(each);

@@ -184,7 +184,11 @@ namespace FSI {
    public:
     enum Source { FREE, NUMBER, EQUAL, ATOM };    // FREE: none was given
 
-    Values(LAMMPS *, const std::string &command, int n);    // as a user writes it: fix fsi/stream
+    Values(LAMMPS *lmp, const std::string &command, int n) :
+        // as a user writes it: fix fsi/stream
+        Pointers(lmp), command(command), list(n)
+    {
+    }
     ~Values();
     Values(const Values &) = delete;
 
@@ -231,8 +235,8 @@ namespace FSI {
     };
     const std::string command;
     std::vector<Value> list;
-    double **each;    // of atom-style variables
-    int nmax;
+    double **each = nullptr;    // of atom-style variables
+    int nmax = 0;
     int variable(Value &) const;
     int shared_group() const;              // of all commands: LAMMPS has 32
     void mark(int i, int igroup) const;    // in it, or out of it

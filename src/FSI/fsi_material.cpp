@@ -76,6 +76,12 @@ const struct Property {
                   {"yield", &Material::yield, {SOLID}, false, Range::from(0.0)},
                   {"hardening", &Material::hardening, {SOLID}, false, Range::from(0.0)}};
 
+// "" at the end of a line
+std::string next(ValueTokenizer &values)
+{
+  return values.has_next() ? values.next_string() : "";
+}
+
 bool has(int species, const Property &p)
 {
   return std::find(p.species.begin(), p.species.end(), species) != p.species.end();
@@ -165,15 +171,14 @@ class MaterialReader : protected Pointers {
       if (m.species == FLUID)
         for (const char *const law : Viscosity::Laws::NAMES) known += std::string(", ") + law;
       if (m.species == FLUID) known += std::string(", ") + LIMITS;
-      std::string key = values.has_next() ? values.next_string() : "";
-      while (!key.empty()) {
+      for (std::string key = next(values), after; !key.empty(); key = after) {
+        const std::string what = fmt::format("Material {} {}: {}", name, where, key);
         if (key == PRONY && m.species == SOLID) {
-          key = parse_prony(fmt::format("Material {} {}: {}", name, where, PRONY), values, m);
+          after = parse_prony(what, values, m);
           continue;
         }
-        const std::string what = fmt::format("Material {} {}: {}", name, where, key);
         if (m.species == FLUID && parse_law(what, key, values, m.law)) {
-          key = values.has_next() ? values.next_string() : "";
+          after = next(values);
           continue;
         }
         const auto p =
@@ -185,7 +190,7 @@ class MaterialReader : protected Pointers {
                      where, known);
         m.*p->value = numeric(lmp, what, values.next_string(), p->range, true);
         given += key + " ";
-        key = values.has_next() ? values.next_string() : "";
+        after = next(values);
       }
       for (const auto &p : properties)
         if (p.needed && has(m.species, p) &&
@@ -204,13 +209,12 @@ class MaterialReader : protected Pointers {
                  Viscosity &law)
   {
     using Laws = Viscosity::Laws;
-    const auto next = [&](const char *of, const Range &range) {
-      return numeric(lmp, what + " " + of, values.has_next() ? values.next_string() : "", range,
-                     true);
+    const auto number = [&](const char *of, const Range &range) {
+      return numeric(lmp, what + " " + of, next(values), range, true);
     };
     if (key == LIMITS) {
-      law.least = next("least", Range::from(0.0));
-      law.most = next("largest", Range::above(law.least));
+      law.least = number("least", Range::from(0.0));
+      law.most = number("largest", Range::above(law.least));
       return true;
     }
     const int found =
@@ -221,7 +225,7 @@ class MaterialReader : protected Pointers {
     law.law = found;
     for (int k = 0; k < Laws::COUNTS[found]; k++) {
       const LawParameter &p = Laws::PARAMETERS[found][k];
-      law.parameter[k] = next(p.name, p.positive ? Range::above(0.0) : Range::from(0.0));
+      law.parameter[k] = number(p.name, p.positive ? Range::above(0.0) : Range::from(0.0));
     }
     return true;
   }
@@ -241,22 +245,21 @@ class MaterialReader : protected Pointers {
   std::string parse_prony(const std::string &what, ValueTokenizer &values, Material &m)
   {
     double sum = 0.0;
-    std::string next = values.has_next() ? values.next_string() : "";
+    std::string word = next(values);
     m.nprony = 0;
     do {
       if (m.nprony == Material::MAX_PRONY)
         error->one(FLERR, "{} has more than {} terms", what, Material::MAX_PRONY);
       auto &term = m.prony[m.nprony++];
-      term.g = numeric(lmp, what + " g", next, Range::inside(0.0, 1.0), true);
-      term.tau = numeric(lmp, what + " tau", values.has_next() ? values.next_string() : "",
-                         Range::above(0.0), true);
+      term.g = numeric(lmp, what + " g", word, Range::inside(0.0, 1.0), true);
+      term.tau = numeric(lmp, what + " tau", next(values), Range::above(0.0), true);
       sum += term.g;
-      next = values.has_next() ? values.next_string() : "";
-    } while (!next.empty() && utils::is_double(next));
+      word = next(values);
+    } while (!word.empty() && utils::is_double(word));
     if (sum >= 1.0)
       error->one(FLERR, "{}: the sum of all g is {:.10g}, expected below 1: a part must not relax",
                  what, sum);
-    return next;
+    return word;
   }
 };
 

@@ -11,12 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Drift and kick of fix fsi: loops over this rank's particles, on the host
+// What fix fsi does to particles in a step: loops over this rank's, on the host
 
 #include "fix_fsi.h"
 
 #include "atom.h"
+#include "error.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "update.h"
 
@@ -65,4 +67,34 @@ void FixFSI::kick()
   const double dt = update->dt;
   (disc.dim == 2 ? kick_in<2> : kick_in<3>) (atom, disc.state.data(), step, dt * force->ftm2v,
                                              0.5 * dt, groupbit);
+}
+
+void FixFSI::find_others()
+{
+  bool local = false;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (disc.state[atom->type[i]].species != NONE) continue;
+    local = true;
+    if (atom->rmass[i] <= 0.0)
+      error->one(FLERR,
+                 "Atom {} is of type {}, which has no material, and has no mass: give it a "
+                 "material in pair_coeff, or, if it is a particle of another pair style, a mass",
+                 atom->tag[i], atom->type[i]);
+  }
+  others_turn =
+      anywhere(local, world) && atom->radius_flag && atom->omega_flag && atom->torque_flag;
+}
+
+// spheres, in 2D too, as in fix nve/sphere
+void FixFSI::turn() const
+{
+  if (!others_turn) return;
+  double **const omega = atom->omega, **const torque = atom->torque;
+  const double dtf = update->dt * force->ftm2v / 0.4;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    if (disc.state[atom->type[i]].species != NONE || atom->radius[i] == 0.0) continue;
+    const double by = dtf / (atom->rmass[i] * atom->radius[i] * atom->radius[i]);
+    for (int d = 0; d < 3; d++) omega[i][d] += by * torque[i][d];
+  }
 }

@@ -30,13 +30,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-NumberDensity::NumberDensity(LAMMPS *lmp, Discretization &disc, StepState &step, Ghosts &ghosts,
-                             const std::vector<Part *> &parts) :
-    Pointers(lmp),
-    disc(disc), step(step), ghosts(ghosts), parts(parts)
-{
-}
-
 void NumberDensity::set_fields(Fields &fields)
 {
   const int of_fluid = disc.density_fluid, of_solid = disc.density_solid;
@@ -156,13 +149,6 @@ double DeficitOfPlane::operator()(double s) const
   while (k + 1 < layers.size() && s > layers[k].first) k++;
   const auto &a = layers[k - 1], &b = layers[k];
   return a.second + (s - a.first) * (b.second - a.second) / (b.first - a.first);
-}
-
-SurfaceDeficit::SurfaceDeficit(LAMMPS *lmp, const Discretization &disc, const StepState &step,
-                               Ledger &ledger, const NumberDensity &number_density) :
-    Pointers(lmp),
-    disc(disc), step(step), ledger(ledger), number_density(number_density)
-{
 }
 
 void SurfaceDeficit::set_array(Fields &fields)

@@ -31,7 +31,12 @@ namespace FSI {
 
   class NumberDensity : protected Pointers {
    public:
-    NumberDensity(LAMMPS *, Discretization &, StepState &, Ghosts &, const std::vector<Part *> &);
+    NumberDensity(LAMMPS *lmp, Discretization &disc, StepState &step, Ghosts &ghosts,
+                  const std::vector<Part *> &parts) :
+        Pointers(lmp),
+        disc(disc), step(step), ghosts(ghosts), parts(parts)
+    {
+    }
     void set_fields(Fields &);    // for the effects that there are now
     void add_messages(Message &to_ghosts);
     // of the positions in atom->x; and the densities that follow from it
@@ -76,8 +81,12 @@ namespace FSI {
   // result does not depend on how often it is evaluated.
   class SurfaceDeficit final : public Part, protected Pointers {
    public:
-    SurfaceDeficit(LAMMPS *, const Discretization &, const StepState &, Ledger &,
-                   const NumberDensity &);
+    SurfaceDeficit(LAMMPS *lmp, const Discretization &disc, const StepState &step, Ledger &ledger,
+                   const NumberDensity &number_density) :
+        Pointers(lmp),
+        disc(disc), step(step), ledger(ledger), number_density(number_density)
+    {
+    }
     void set_array(Fields &);
     void write(Record &) const;
     void read(const Record &);

@@ -177,11 +177,11 @@ namespace FSI {
       int size() const { return n[0] * n[1]; }
     };
     Box given, taken;
-    int nlateral, lateral[2];                // axes along the plane
-    double distance[2];                      // of nodes along them
+    int nlateral = 1, lateral[2] = {};       // axes along the plane
+    double distance[2] = {1.0, 1.0};         // of nodes along them
     std::vector<double> sums_given, sums;    // rows of each
 
-    explicit Nodes(LAMMPS *);
+    explicit Nodes(LAMMPS *lmp) : Pointers(lmp) {}
     void place(int axis, double spacing);    // as the simulation box is now
     // The nodes within a reach of some places, which stay so until the next lists; together on all
     // ranks of a communicator; null: this rank is none of them
@@ -212,10 +212,10 @@ namespace FSI {
     }
 
    private:
-    int first[2], count[2];    // all nodes
-    bool periodic[2];
-    int nsum, nlargest;
-    MPI_Comm ranks;
+    int first[2] = {}, count[2] = {1, 1};    // all nodes
+    bool periodic[2] = {};
+    int nsum = 0, nlargest = 0;
+    MPI_Comm ranks = MPI_COMM_NULL;
     struct Peer {
       int rank = 0;
       std::vector<int> give, take;    // numbers of the nodes in both of the two ranks' boxes

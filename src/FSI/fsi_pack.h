@@ -289,7 +289,6 @@ namespace FSI {
     {
       for (int d = 0; d < n; d++) a[*j][d] += x[d];
     }
-    // adds the sum of each to the numbers at a
     // sums over all places of n numbers, in as many T
     static constexpr int totals(int n) { return n; }
     // add_rows(), and to totals

@@ -49,10 +49,7 @@ static constexpr double TAKES_PLACE = 0.75;
 // two that are nearer go apart to this: kernels do not see to it, their gradient is 0 at 0
 static constexpr double APART = 0.6;
 
-FSIPack::FSIPack(LAMMPS *lmp) :
-    Command(lmp), body(0), fluid(0), still(0), filler(0), gone_at_once(0), distant(0), band(0.0)
-{
-}
+FSIPack::FSIPack(LAMMPS *lmp) : Command(lmp) {}
 
 FSIPack::~FSIPack() = default;
 

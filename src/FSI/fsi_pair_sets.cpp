@@ -158,12 +158,21 @@ template <int D> void PairSets::find_reach(bool may_sort)
   const size_t size = may_sort ? (size_t) D * atom->nmax : 0;
   if (sorted_at.size() < size) sorted_at.resize(size);
   const auto *const old = reinterpret_cast<const double(*)[D]>(sorted_at.data());
-  const auto [fastest, farthest] = step->largest<2>(nall, [=](int i) {
-    double vsq = 0.0, rsq = 0.0;
-    for (int d = 0; d < D; d++) vsq += v[i][d] * v[i][d];
-    for (int d = 0; may_sort && d < D; d++) rsq += (x[i][d] - old[i][d]) * (x[i][d] - old[i][d]);
-    return std::array<double, 2>{vsq, rsq};
+  const auto parts = step->in_parts(nall, [=](int first, int last) {
+    std::array<double, 2> most = {};
+    for (int i = first; i < last; i++) {
+      double vsq = 0.0, rsq = 0.0;
+      for (int d = 0; d < D; d++) vsq += v[i][d] * v[i][d];
+      for (int d = 0; may_sort && d < D; d++) rsq += (x[i][d] - old[i][d]) * (x[i][d] - old[i][d]);
+      most = {std::max(most[0], vsq), std::max(most[1], rsq)};
+    }
+    return most;
   });
+  double fastest = 0.0, farthest = 0.0;
+  for (const auto &[first, most] : parts) {
+    fastest = std::max(fastest, most[0]);
+    farthest = std::max(farthest, most[1]);
+  }
   // what a pair comes nearer in a step
   const double nearer = 2.0 * update->dt * std::sqrt(fastest);
   double walls = 0.0;

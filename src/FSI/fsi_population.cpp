@@ -28,11 +28,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-Population::Population(LAMMPS *lmp, const Discretization &disc, const StepState &step) :
-    Pointers(lmp), net(0), disc(disc), step(step), last_id(0), made(0), removed(0), wanted(0)
-{
-}
-
 Particle Population::copy_of(int i) const
 {
   const double *const x = atom->x[i], *const v = atom->v[i];

@@ -38,11 +38,14 @@ namespace FSI {
 
   class Population : protected Pointers {
    public:
-    Population(LAMMPS *, const Discretization &, const StepState &);
+    Population(LAMMPS *lmp, const Discretization &disc, const StepState &step) :
+        Pointers(lmp), disc(disc), step(step)
+    {
+    }
     Particle copy_of(int i) const;
     double energy(int i) const;    // kinetic, potential, compressive
 
-    bigint net;                 // particles made less those deleted, since fix fsi is there
+    bigint net = 0;             // particles made less those deleted, since fix fsi is there
     void leave_an_id_free();    // in init() of what makes particles
     void begin();
     // of this rank, in rising order; to an account goes their energy, from it that of new ones.
@@ -54,8 +57,7 @@ namespace FSI {
     // IDs of particles that are to be made on any rank, the same list on all; first those released
     std::vector<tagint> ids(int n, const std::string &label);
     int copy(int i, tagint id);    // of this rank, with all that fixes know of it; where it is
-    void
-    release(const std::vector<tagint> &of_rank);    // IDs of particles removed here: for others
+    void release(const std::vector<tagint> &of_rank);    // IDs of those removed here: for others
     void end();
 
     void write(Record &) const;
@@ -64,9 +66,9 @@ namespace FSI {
    private:
     const Discretization &disc;
     const StepState &step;
-    tagint last_id;                  // the largest that one had which was made or deleted here
+    tagint last_id = 0;              // the largest that one had which was made or deleted here
     std::vector<tagint> free_ids;    // below that, released; in rising order
-    bigint made, removed, wanted;    // since begin(): of this rank; of all
+    bigint made = 0, removed = 0, wanted = 0;    // since begin(): of this rank; of all
     std::string maker;
     void renew_map();
     std::vector<tagint> new_ids(tagint n, const std::string &label);

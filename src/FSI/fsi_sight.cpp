@@ -35,13 +35,6 @@ static constexpr double FAR = 1.1;
 // Of equals, and of a side, the edges: in spacings, as the cosine of an angle
 static constexpr double AS_NEAR = 0.2, ASIDE = 0.3;
 
-Sight::Sight(LAMMPS *lmp, const Discretization &disc, const Walls &walls,
-             const std::vector<double> &types) :
-    Pointers(lmp),
-    disc(disc), walls(walls), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0)
-{
-}
-
 // A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice
 // is finer than the fluid's.
 void Sight::tabulate()
@@ -200,14 +193,20 @@ void Sight::see_images()
   }
 }
 
-bool Sight::may_hide(const double *y, double slack) const
+double Sight::way_to(const double *y, double (&d)[3]) const
 {
-  double d[3] = {}, dsq = 0.0;
-  for (int k = 0; k < disc.dim; k++) {
-    d[k] = y[k] - from[k];
+  double dsq = 0.0;
+  for (int k = 0; k < 3; k++) {
+    d[k] = k < disc.dim ? y[k] - from[k] : 0.0;
     dsq += d[k] * d[k];
   }
-  const double length = std::sqrt(dsq);
+  return dsq;
+}
+
+bool Sight::may_hide(const double *y, double slack) const
+{
+  double d[3];
+  const double length = std::sqrt(way_to(y, d));
   for (double &e : d) e /= length;
   return std::any_of(seen.begin(), seen.end(), [&](const Seen &s) {
     if (!s.thin) return false;
@@ -229,19 +228,15 @@ static double smooth(double x)
 
 double Sight::visible(const double *y, double cut) const
 {
-  double dsq = 0.0;
-  for (int k = 0; k < disc.dim; k++) dsq += (y[k] - from[k]) * (y[k] - from[k]);
-  return dsq < FAR * cut * cut ? left_of(y, cut) : 1.0;
+  double d[3];
+  return way_to(y, d) < FAR * cut * cut ? left_of(y, cut) : 1.0;
 }
 
 double Sight::left_of(const double *y, double cut) const
 {
   const double cutsq = cut * cut;
-  double d[3] = {}, dsq = 0.0;
-  for (int k = 0; k < disc.dim; k++) {
-    d[k] = y[k] - from[k];
-    dsq += d[k] * d[k];
-  }
+  double d[3];
+  const double dsq = way_to(y, d);
   double sum = 0.0, middle = 0.0, spacing = 0.0;
   for (const auto &s : seen) {
     const double along = MathExtra::dot3(s.x, d);

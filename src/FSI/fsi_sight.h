@@ -32,7 +32,12 @@ namespace FSI {
   class Sight : protected Pointers {
    public:
     // whose kernel and spacings are known; past types that are not 0
-    Sight(LAMMPS *, const Discretization &, const Walls &, const std::vector<double> &types);
+    Sight(LAMMPS *lmp, const Discretization &disc, const Walls &walls,
+          const std::vector<double> &types) :
+        Pointers(lmp),
+        disc(disc), walls(walls), types(types)
+    {
+    }
     void tabulate();         // when the fluids' levels are known: for backfill()
     void find_bodies();      // when neighbor lists are new
     void follow_bodies();    // to where they are; what follows is said of then
@@ -60,16 +65,16 @@ namespace FSI {
     const Discretization &disc;
     const Walls &walls;    // at the time of the positions
     const std::vector<double> types;
-    double low[3], per_cell;
-    int n[3];
+    double low[3] = {}, per_cell = 0.0;
+    int n[3] = {};
     std::vector<int> first;    // of each cell, and behind the last
     struct Place {
       double x[3] = {};
       int i = 0;
       bool thin = false;
     };
-    std::vector<Place> places;    // by cell
-    double from[3], reach;        // what is seen is within that
+    std::vector<Place> places;           // by cell
+    double from[3] = {}, reach = 0.0;    // what is seen is within that
     struct Seen {
       double x[3], rsq;     // from x
       double dx, volume;    // spacing, of its cell
@@ -82,6 +87,7 @@ namespace FSI {
     std::vector<double> tabulated;    // spacings of levels
     Backfill beyond(size_t level, int type, double distance) const;
     double left_of(const double *y, double cut) const;
+    double way_to(const double *y, double (&d)[3]) const;    // from x; its square
     // distance of the first layer along the normal, which points to it, and how thick the body is
     struct Face {
       int type = 0;

@@ -43,6 +43,8 @@ namespace FSI {
   struct Hyperelastic {
     static constexpr bool PLANE_STRESS = false, BY_RATE = false;
     static constexpr std::string_view HISTORY = "";
+    FSI_INLINE static double volumetric_energy(double m) { return 0.5 * m * m; }
+    FSI_INLINE static double volumetric_slope(double m) { return m; }
   };
 
   // m = ln J, dm/dF = F^-T
@@ -82,8 +84,6 @@ namespace FSI {
       }
       return 0.5 * (m - D);
     }
-    FSI_INLINE static double volumetric_energy(double m) { return 0.5 * m * m; }
-    FSI_INLINE static double volumetric_slope(double m) { return m; }
     template <int D>
     FSI_INLINE PiolaStress<D> operator()(const double *F, const double * = nullptr) const
     {
@@ -114,8 +114,6 @@ namespace FSI {
     static constexpr char NAME[] = "neohookean", TITLE[] = "neo-Hookean";
     double lambda, mu;
     NeoHookean(double bulk, double shear, bool) : lambda(bulk - 2.0 / 3.0 * shear), mu(shear) {}
-    FSI_INLINE static double volumetric_energy(double m) { return 0.5 * m * m; }
-    FSI_INLINE static double volumetric_slope(double m) { return m; }
     template <int D>
     FSI_INLINE PiolaStress<D> operator()(const double *F, const double * = nullptr) const
     {
@@ -309,8 +307,6 @@ namespace FSI {
       return before - energy + contract<D>(q, mean);
     }
 
-    FSI_INLINE static double volumetric_energy(double m) { return 0.5 * m * m; }
-    FSI_INLINE static double volumetric_slope(double m) { return m; }
     template <int D>
     FSI_INLINE PiolaStress<D> operator()(const double *F, const double *history) const
     {

@@ -15,14 +15,12 @@
 // down.
 //
 // A symmetric tensor of dimension D keeps its in-plane part in Voigt order {xx, yy, xy} (2D) or
-// {xx, yy, zz, xy, xz, yz} (3D). A full D x D matrix is row-major. No LAMMPS types except
-// MathEigen.
+// {xx, yy, zz, xy, xz, yz} (3D). A full D x D matrix is row-major. No LAMMPS types.
 
 #ifndef LMP_FSI_TENSOR_H
 #define LMP_FSI_TENSOR_H
 
 #include "fsi_pack.h"
-#include "math_eigen.h"
 
 #include <cmath>
 
@@ -192,35 +190,6 @@ namespace FSI {
         for (int k = 0; k < D; k++) s += qt[a * D + k] * Q[b * D + k];
         r(a, b) = s;
       }
-    return r;
-  }
-
-  // sum over the principal values s_k > 0 of t of s_k n_k n_k^T (the tensile part of t)
-  template <int D> inline Sym<D> tensile_part(const Sym<D> &t)
-  {
-    Sym<D> r;
-    if constexpr (D == 2) {
-      const double mean = 0.5 * (t.c[0] + t.c[1]), half = 0.5 * (t.c[0] - t.c[1]);
-      const double radius = std::sqrt(half * half + t.c[2] * t.c[2]);
-      const double s1 = mean + radius, s2 = mean - radius;
-      if (s1 <= 0.0) return r;
-      if (s2 >= 0.0) return t;
-      // s1 n1 n1^T with n1 n1^T = (I + (t - mean I)/radius)/2
-      const double f = 0.5 * s1 / radius;
-      r.c[0] = f * (radius + half);
-      r.c[1] = f * (radius - half);
-      r.c[2] = f * t.c[2];
-    } else {
-      const double m[3][3] = {
-          {t.c[0], t.c[3], t.c[4]}, {t.c[3], t.c[1], t.c[5]}, {t.c[4], t.c[5], t.c[2]}};
-      double s[3], n[3][3];    // columns of n are the principal directions
-      MathEigen::jacobi3(m, s, n);
-      for (int k = 0; k < 3; k++) {
-        if (s[k] <= 0.0) continue;
-        for (int a = 0; a < 3; a++)
-          for (int b = a; b < 3; b++) r(a, b) += s[k] * n[a][k] * n[b][k];
-      }
-    }
     return r;
   }
 

@@ -30,12 +30,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-void CutSolids::init(const Discretization &disc_in, bool has_solids_in)
-{
-  disc = &disc_in;
-  has_solids = has_solids_in;
-}
-
 // solids that pass through mirror walls, or may before the next neighbor lists
 void CutSolids::find_depths(const Walls &walls)
 {
@@ -47,7 +41,7 @@ void CutSolids::find_depths(const Walls &walls)
   const auto for_near = [&](auto f) {
     const InnerBox inner(wall, neighbor->skin);
     for (int i = 0; i < atom->nlocal; i++) {
-      if (inner.contains(x[i]) || disc->state[type[i]].species != SOLID) continue;
+      if (inner.contains(x[i]) || disc.state[type[i]].species != SOLID) continue;
       for (int k = 0; k < n; k++)
         if (!wall[k].finite) f(i, n * type[i] + k, wall[k]);
     }
@@ -86,10 +80,10 @@ void CutSolids::find(StepState &step)
   parts.assign(nall, 1.0);
   part_rates.assign(nall, 0.0);
   for (int i = 0; i < nall; i++) {
-    if (disc->state[type[i]].species != SOLID) continue;
-    const double dx = disc->dx_of(type[i]);
+    if (disc.state[type[i]].species != SOLID) continue;
+    const double dx = disc.dx_of(type[i]);
     parts[i] = walls.before(x[i], v[i], dx, &depths[walls.wall.size() * type[i]], part_rates[i]);
-    step.wmask[i] = parts[i] > 0.0 ? walls.near(x[i], disc->cut, 0.5 * dx) : 0;
+    step.wmask[i] = parts[i] > 0.0 ? walls.near(x[i], disc.cut, 0.5 * dx) : 0;
   }
 }
 

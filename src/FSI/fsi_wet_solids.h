@@ -33,16 +33,18 @@ namespace FSI {
   // How much of the solids' particles is before mirror walls, and its rate
   class CutSolids : protected Pointers {
    public:
-    explicit CutSolids(LAMMPS *lmp) : Pointers(lmp) {}
-    void init(const Discretization &, bool has_solids);
+    CutSolids(LAMMPS *lmp, const Discretization &disc, bool has_solids) :
+        Pointers(lmp), disc(disc), has_solids(has_solids)
+    {
+    }
     // where particles are in this step; takes what is behind walls out of step.wmask
     void find(StepState &step);
     const Cut *of_particles();    // null: no solid passes through a wall
     double memory_usage() const;
 
    private:
-    const Discretization *disc = nullptr;
-    bool has_solids = false;
+    const Discretization &disc;
+    const bool has_solids;
     bool any = false, may_pass = false;    // is one cut, may one be before the next lists?
     std::vector<Walls::Depth> depths;      // per type and wall
     std::vector<double> parts, part_rates;

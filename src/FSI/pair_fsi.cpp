@@ -21,7 +21,6 @@
 #include "fix_fsi_reference.h"
 #include "force.h"
 #include "fsi_find.h"
-#include "fsi_others.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
@@ -36,8 +35,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
-    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), alpha(0.0), beta(0.0),
-    contact_range(1.0), self_contact(0), first_level(0)
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -201,11 +199,10 @@ void PairFSI::init_style()
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) fix_fsi->disc.enter_state(t, make_state(material[t]));
   // before fixes and computes ask for masses
-  const Others defaults(lmp, fix_fsi->disc);
-  const std::vector<State> &state = fix_fsi->disc.state;
   for (int i = 0; i < atom->nlocal; i++) {
-    const int species = state[atom->type[i]].species;
-    if (species != NONE && handles(FLUID, FLUID) == (species != SOLID)) defaults.give_defaults(i);
+    const int species = disc->state[atom->type[i]].species;
+    if (species != NONE && handles(FLUID, FLUID) == (species != SOLID))
+      give_defaults(i, atom, *disc);
   }
   if (needs_neighbors())
     neighbor->add_request(this);

@@ -57,10 +57,10 @@ class PairFSI : public Pair, public FSI::Part {
   FSI::Ledger *ledger = nullptr;
   FSI::Ghosts *ghosts = nullptr;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
-  double alpha, beta;                     // artificial/visc (fsi_pair_laws.h)
-  double contact_range;                   // of solids, over dx (fsi_pair_laws.h)
-  int self_contact;                       // of a body with itself
-  int first_level;                        // types from here on: pair_coeff keeps them; 0: none
+  double alpha = 0.0, beta = 0.0;         // artificial/visc (fsi_pair_laws.h)
+  double contact_range = 1.0;             // of solids, over dx (fsi_pair_laws.h)
+  int self_contact = 0;                   // of a body with itself
+  int first_level = 0;                    // types from here on: pair_coeff keeps them; 0: none
 
   // does this style handle pairs of these species?
   virtual bool handles(int, int) const = 0;

@@ -57,22 +57,20 @@ struct PairFSIFluid::LevelRatios {
 struct PairFSIFluid::Members {
   Fields fields;
   PairSets pairs;
-  CutSolids cut_solids;
   // from init_style() on
+  std::optional<CutSolids> cut_solids;
   std::optional<LightSolids> light_solids;
   std::optional<Shear> shear;
   std::optional<ImplicitViscosity> implicit;
   // what loops get the address of
   Thin thin_bodies = {};
   Visible seen_pairs = {};
-  explicit Members(LAMMPS *lmp) : fields(lmp), pairs(lmp), cut_solids(lmp) {}
+  explicit Members(LAMMPS *lmp) : fields(lmp), pairs(lmp) {}
 };
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), pairs(members->pairs), couple(WALL),
-    fade(nullptr), backfill(nullptr), backfill_weight(nullptr), fields(members->fields),
-    rate(nullptr), beyond(nullptr), given_ghosts(0.0), raised_ghosts(-1.0), hybrid(nullptr),
-    no_fdotr_before(0)
+    fields(members->fields)
 {
   std::vector<std::string> presets = {"none"};
   for (const Preset &s : PRESETS) presets.push_back(s.name);
@@ -284,7 +282,7 @@ void PairFSIFluid::init_style()
                PRESETS[preset - 1].name);
   FixFSI::find(lmp, style)->disc.find_levels();
   pairs.init(*disc, *step, couple != WALL);
-  members->cut_solids.init(*disc, has_solids());
+  members->cut_solids.emplace(lmp, *disc, has_solids());
   members->light_solids.emplace(lmp, *disc, *step, *ledger, *ghosts,
                                 implicit && sticks_to_solids());
   members->shear.emplace(lmp, *disc, *step, *ghosts, eddies);
@@ -419,7 +417,7 @@ bool PairFSIFluid::add_rates(bool advance)
     ghosts->send(backfill);
     ghosts->send(backfill_weight);
   }
-  members->cut_solids.find(*step);
+  members->cut_solids->find(*step);
   if (rate || step->walls.any()) pairs.find_reach(rate != nullptr);
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
@@ -627,7 +625,7 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
           nullptr,
           false,
           backfill ? &members->thin_bodies : nullptr,
-          members->cut_solids.of_particles(),
+          members->cut_solids->of_particles(),
           force->newton_pair != 0};
 }
 
@@ -807,18 +805,13 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
 void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = disc->dim;
-  const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   for_levels(*disc, [&](size_t level, const auto &kernel) {
     for (const Row &row : pairs.of(level, PairSet::SOLIDS).rows.rows)
-      for (int k = 0; k < row.n; k++) {
-        const int i = row.i, j = row.j[k];
-        double rsq = 0.0;
-        for (int d = 0; d < dim; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
-        if (rsq >= kernel.cutsq) continue;
+      for_near(row, atom->x, dim, kernel.cutsq, [&](int j, const double *, double rsq) {
         const double W = kernel.W(std::sqrt(rsq));
-        for (int d = 0; d < dim; d++) beyond[j][d] += W * v[i][d];
+        for (int d = 0; d < dim; d++) beyond[j][d] += W * atom->v[row.i][d];
         beyond[j][dim] += W;
-      }
+      });
   });
 }
 
@@ -879,11 +872,9 @@ void PairFSIFluid::find_viscosities(const std::vector<FluidParticles> &of_level,
 
 const Shear &PairFSIFluid::find_shear()
 {
-  disc->dim == 2 ? gather<2>(0.0,
-                             [](int, Point<2> &) {
-                             })
-                 : gather<3>(0.0, [](int, Point<3> &) {
-                   });
+  const auto no_more = [](int, const auto &) {
+  };
+  disc->dim == 2 ? gather<2>(0.0, no_more) : gather<3>(0.0, no_more);
   members->shear->find_gradients(pairs, particles_of_levels(), laws_of_forces());
   return *members->shear;
 }
@@ -1054,7 +1045,7 @@ double PairFSIFluid::memory_usage()
 {
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
       pressure_over_density.capacity();
-  return fields.memory_usage() + pairs.memory_usage() + members->cut_solids.memory_usage() +
+  return fields.memory_usage() + pairs.memory_usage() + members->cut_solids->memory_usage() +
       members->shear->memory_usage() + members->implicit->memory_usage() +
       (double) numbers * sizeof(double);
 }

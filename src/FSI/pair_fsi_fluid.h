@@ -125,13 +125,14 @@ class PairFSIFluid : public PairFSI {
   std::vector<LevelRatios> ratios;    // per level
   void find_ratios();
   void find_guards();
-  double *fade;    // of fluids of several levels: what is left of shifting's factor; or null
+  double *fade =
+      nullptr;    // of fluids of several levels: what is left of shifting's factor; or null
   std::vector<double> volumes;
   void find_fades();
   template <class T, class K>
   void add_fades(const K &, const std::vector<FSI::Row> &, const FSI::Visible &);
   // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
-  double *backfill, *backfill_weight;
+  double *backfill = nullptr, *backfill_weight = nullptr;
   // particles as the loop over these rows sees them, and that loop
   FSI::FluidParticles of_rows(const FSI::FluidParticles &, const FSI::PairSet &,
                               const std::vector<FSI::Row> &, const std::vector<double> &visible);
@@ -143,7 +144,7 @@ class PairFSIFluid : public PairFSI {
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions
   // dt/2 ago, to which the velocities belong
   FSI::Fields &fields;
-  double *rate;    // local after the reverse communication
+  double *rate = nullptr;    // local after the reverse communication
   int nshift() const, shift_sums() const;
   bool fills() const
   {    // no free surfaces: with a background pressure they would blow up
@@ -152,7 +153,7 @@ class PairFSIFluid : public PairFSI {
   bool open_ends;
   double *const *velocity_of_shifting() const;
   // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around
-  double **beyond;
+  double **beyond = nullptr;
   void add_velocities_at_solids();
   void extrapolate_velocities();
   template <int D> void correct_powers();
@@ -174,9 +175,11 @@ class PairFSIFluid : public PairFSI {
   template <int D>
   void add_implicit_viscosity(const std::vector<FSI::FluidParticles> &of_level, FSI::ForceLaws,
                               FSI::PairSums *);
-  double given_ghosts, raised_ghosts;    // cutoffs: that of the user, as raised for images
-  Pair *hybrid;    // the hybrid style that this one makes sum its virial pair by pair; null: none
-  int no_fdotr_before;
+  double given_ghosts = 0.0,
+         raised_ghosts = -1.0;    // cutoffs: that of the user, as raised for images
+  // the hybrid style that this one makes sum its virial pair by pair; null: none
+  Pair *hybrid = nullptr;
+  int no_fdotr_before = 0;
   void take_virial(Pair *of);
   FSI::Contact guard_of(int type, double spacing) const;
   template <class Sum> void distance_sums(bool others_too, const FSI::FluidParticles &, Sum);

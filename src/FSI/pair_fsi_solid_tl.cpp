@@ -59,10 +59,8 @@ struct PairFSISolidTL::Members {
 };
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), members(new Members), strain_energy(0.0), reference(nullptr),
-    fix_stress(nullptr), fix_history(nullptr), laws(members->laws), fsolid(nullptr), nmax(0),
-    nmoving(0), changes_seen(-1), only_moving(false), one_material(true),
-    smoothed(members->smoothed), sends_strains(false)
+    PairFSI(lmp, "fsi/solid/tl"), members(new Members), laws(members->laws),
+    smoothed(members->smoothed)
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
@@ -223,11 +221,6 @@ void PairFSISolidTL::refuse_rigid_parts() const
             fix->id, fix->style, atom->tag[row.i]);
     }
   }
-}
-
-const std::vector<int> &PairFSISolidTL::solids() const
-{
-  return reference->solids;
 }
 
 // with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup
@@ -952,11 +945,12 @@ void PairFSISolidTL::integrate_substeps()
   const int substeps = step->substeps;
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
   const bool clamped = clamps->any_elastic();
-  if (clamped) clamps->begin_substeps(solids());
-  const Moved all(lmp, *disc, *step, *clamps, solids());
+  const std::vector<int> &solids = reference->solids;
+  if (clamped) clamps->begin_substeps(solids);
+  const Moved all(lmp, *disc, *step, *clamps, solids);
   Wet wet(*step, atom, all.moving, dt * force->ftm2v);
   ledger->set_tally(dt);
-  check->before_substeps(solids());
+  check->before_substeps(solids);
   only_moving = !ledger->kept;
   all.drift(back);
   for (int n = 0; n < substeps; n++) {

@@ -80,9 +80,8 @@ class PairFSISolidTL : public PairFSI {
   // positions are; velocities are those of the time between
   void advance_stress(double dt, double since);
   void break_bonds();    // keyword damage
-  const std::vector<int> &solids() const;
   // of this rank's particles at the last forces; kept for compute fsi/energy
-  double strain_energy;
+  double strain_energy = 0.0;
 
   struct Stress {
     double sigma[6] = {};    // Cauchy: xx yy zz xy xz yz
@@ -116,12 +115,12 @@ class PairFSISolidTL : public PairFSI {
   int law, plane_stress, linear, plain, volumetric;
   FSI::Clamps *clamps = nullptr;    // of fix fsi
   FSI::Check *check = nullptr;
-  class FixFSIReference *reference;
-  class FixFSIStress *fix_stress;      // null: the law has no rates
-  class FixFSIHistory *fix_history;    // null: the law has no history of its own
+  class FixFSIReference *reference = nullptr;
+  class FixFSIStress *fix_stress = nullptr;      // null: the law has no rates
+  class FixFSIHistory *fix_history = nullptr;    // null: the law has no history of its own
   FSI::SolidLaws &laws;
-  double **fsolid;
-  int nmax;
+  double **fsolid = nullptr;
+  int nmax = 0;
 
   void refuse_constraints() const;
   void add_forces();    // to those of all
@@ -132,13 +131,14 @@ class PairFSISolidTL : public PairFSI {
   void make_laws();
   // per particle, stress of rates or the law's own; or null
   const double *const *history() const;
-  int nmoving, changes_seen;    // rows that act not on held particles alone; when they were found
+  int nmoving = 0,
+      changes_seen = -1;    // rows that act not on held particles alone; when they were found
   // forces of those are wanted; all solids have one density and one speed of sound
-  bool only_moving, one_material;
+  bool only_moving = false, one_material = true;
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <int D> void gather_points();
   FSI::VolumetricStrain &smoothed;
-  bool sends_strains;    // what messages carry: these, or positions and forces
+  bool sends_strains = false;    // what messages carry: these, or positions and forces
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
   // what call(laws per type, constant with the dimension) returns

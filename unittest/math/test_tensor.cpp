@@ -7,7 +7,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_tensor.h"
+#include "fsi_classic_laws.h"
 #include "reference.h"
 
 using namespace LAMMPS_NS::FSI;

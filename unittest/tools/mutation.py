@@ -39,7 +39,7 @@ TESTS = {
     "fsi_hub.cpp": "surface density energy", "fsi_body_forces.cpp": "density energy gravity", "fsi_fields.cpp": "parallel restart",
     "fix_fsi_stress.*": "solid integrator plasticity restart", "fix_fsi_wall_mirror.cpp": "walls report", "fix_fsi_wall_particle.cpp": "wall_particles",
     "fix_fsi_dt.cpp": "dt", "fsi_limits.cpp": "dt watch", "fix_fsi_move.cpp": "move", "fix_fsi_stream.cpp": "stream",
-    "fix_fsi_inlet.cpp": "inlet", "fsi_open_end.cpp": "inlet", "fsi_buffer.cpp": "inlet", "fsi_plane_fit.cpp": "inlet", "fix_fsi_refine.cpp": "refine", "fsi_refine.h": "refine", "fix_fsi_spectrum.cpp": "spectrum", "fix_fsi_watch.cpp": "watch", "fix_fsi_report.cpp": "report",
+    "fix_fsi_inlet.cpp": "inlet", "fsi_open_end.cpp": "inlet", "fsi_buffer.cpp": "inlet", "fix_fsi_refine.cpp": "refine", "fsi_refine.h": "refine", "fix_fsi_spectrum.cpp": "spectrum", "fix_fsi_watch.cpp": "watch", "fix_fsi_report.cpp": "report",
     "fsi_check.cpp": "stop", "fsi_pack_command.cpp": "packing", "fsi_surface.cpp": "packing", "fsi_commands.cpp": "displace density materials clamp_command", "compute_fsi_energy.cpp": "energy solid_tl", "compute_fsi_force.cpp": "force",
     "compute_fsi_probe.cpp": "probe", "compute_fsi_surface_atom.cpp": "surface", "compute_fsi_atom.cpp": "density solid",
     "fsi_volumetric.h": "solid_volumetric", "fsi_changes.*": "redefine", "fsi_keywords.*": "redefine move stream restart", "fsi_cells.h": "advice self_contact",
