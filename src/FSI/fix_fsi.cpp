@@ -19,7 +19,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"

@@ -242,8 +242,8 @@ void FixFSIDt::start_step()
 // the limits (fsi_limits.cpp) with the factors
 void FixFSIDt::find_limits()
 {
-  const bool may = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
-  const bool substeps = may && (automatic || step->substeps > 1);
+  const bool substeps = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS &&
+      (automatic || step->substeps > 1);
   limits->find(*disc, step->viscosity, groupbit, substeps, of_fluid, of_solid);
   limits->reduce();
 }

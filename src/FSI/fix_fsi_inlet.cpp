@@ -30,7 +30,6 @@
 #include "update.h"
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 static constexpr double AUTO = OpenEnd::AUTO;

@@ -27,14 +27,11 @@
 #include "fsi_record.h"
 #include "fsi_refusals.h"
 #include "fsi_self_contact.h"
-#include "fsi_swaps.h"
 
 #include <cmath>
-#include <cstring>
 #include <set>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 struct FixFSIReference::Members {

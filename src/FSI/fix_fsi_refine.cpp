@@ -35,7 +35,6 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 // Spacings from one level to the next: half the mass, so long as this part of it
@@ -138,11 +137,6 @@ void FixFSIRefine::find_types()
   types.assign(kept.begin(), kept.begin() + number + 1);
   level_of.assign(atom->ntypes + 1, -1);
   for (int k = 0; k <= number; k++) level_of[types[k]] = k;
-}
-
-int FixFSIRefine::setmask()
-{
-  return PRE_EXCHANGE;
 }
 
 void FixFSIRefine::init()
@@ -767,11 +761,6 @@ int FixFSIRefine::pack_forward_comm(int n, int *list, double *buf, int, int *)
 void FixFSIRefine::unpack_forward_comm(int n, int first, double *buf)
 {
   for (int k = 0; k < n; k++) (*message)[first + k] = (tagint) ubuf(buf[k]).i;
-}
-
-double FixFSIRefine::compute_vector(int n)
-{
-  return total[n];
 }
 
 void FixFSIRefine::write_restart(FILE *fp)

@@ -47,13 +47,13 @@ class FixFSIRefine : public Fix {
  public:
   FixFSIRefine(class LAMMPS *, int, char **);
   ~FixFSIRefine() override;
-  int setmask() override;
+  int setmask() override { return FixConst::PRE_EXCHANGE; }
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
-  double compute_vector(int) override;
+  double compute_vector(int n) override { return total[n]; }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double memory_usage() override;

@@ -34,7 +34,6 @@
 #endif
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 static constexpr int LEAST = 8;    // samples that make a spectrum

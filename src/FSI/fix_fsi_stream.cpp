@@ -33,7 +33,6 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :

@@ -31,7 +31,6 @@
 #include <map>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 static constexpr double BIG = 1.0e300, EDGE = HUGE_VAL;    // stand for INF, EDGE
@@ -64,12 +63,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
 // one keyword at a time, and the values that follow it
 void FixFSIWallMirror::read_walls(int narg, char **arg)
 {
-  static const std::vector<std::string> faces = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"},
-                                        others = {"range",    "velocity",    "slip",
-                                                  "symmetry", "hydrostatic", "guard"};
-  const auto is_in = [](const std::vector<std::string> &list, const std::string &word) {
-    return std::find(list.begin(), list.end(), word) != list.end();
-  };
+  static const std::vector<std::string> faces = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
   double place, low, high, velocity[3], distance;
   int axis, slip, joins, hydrostatic;
   Keywords words(lmp, "fix fsi/wall/mirror");
@@ -87,9 +81,9 @@ void FixFSIWallMirror::read_walls(int narg, char **arg)
   for (int iarg = 3, next; iarg < narg; iarg = next) {
     const std::string key = arg[iarg];
     next = iarg + 1;
-    while (next < narg && !is_in(faces, arg[next]) && !is_in(others, arg[next])) next++;
+    while (next < narg && !words.knows(arg[next])) next++;
     words.parse(next - iarg, arg + iarg);
-    if (is_in(faces, key)) {
+    if (std::find(faces.begin(), faces.end(), key) != faces.end()) {
       add_wall(key, place);
       slip_given.push_back(false);
     } else if (key == "guard") {

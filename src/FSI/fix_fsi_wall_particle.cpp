@@ -14,7 +14,6 @@
 #include "fix_fsi_wall_particle.h"
 
 #include "atom.h"
-#include "atom_vec_fsi.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
@@ -30,7 +29,6 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_rows.h"
-#include "fsi_swaps.h"
 #include "fsi_tensor.h"
 #include "math_extra.h"
 #include "modify.h"
@@ -42,7 +40,6 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 static constexpr double AUTO = -1.0;

@@ -27,9 +27,6 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 #include <vector>
 
 namespace LAMMPS_NS {
-namespace FSI {
-  class Swaps;
-}
 
 // Walls of any shape, made of particles (Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057): a
 // wall particle's pressure, and for no slip its velocity in viscous forces, are extrapolated from

@@ -33,7 +33,6 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 using namespace FSI;
 
 static constexpr double OFF = 1.0e20, FOLLOWS = -1.0;    // a limit; FOLLOWS: the scene

@@ -24,7 +24,6 @@ FixStyle(fsi/watch,FixFSIWatch);
 #include "fsi_part.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {

@@ -60,6 +60,12 @@ enum Kind {    // of particles that are counted
 };
 // clang-format on
 
+struct Near {    // two particles
+  double r;      // spacings
+  tagint a, b;
+  int around;    // direction in which they meet around the box, or -1
+};
+
 // What there is, on all ranks, and what is asked of each particle
 struct Census : public Pointers {
   // clang-format off
@@ -225,14 +231,6 @@ static void box(const Census &c)
              "support {:g}: particles see the same neighbor on both sides",
              c.domain->prd[d], "xyz"[d], c.disc.cut);
 }
-
-namespace {
-struct Near {
-  double r;    // spacings
-  tagint a, b;
-  int around;    // direction in which they meet around the box, or -1
-};
-}    // namespace
 
 // direction of the periodic face beyond which a particle is; -1: it is in the box
 static int around_box(const Census &c, int i)
@@ -530,9 +528,7 @@ static void speeds(const Census &c)
 static void levels(const Census &c)
 {
   static constexpr double JUMP = 1.45, COARSEST = 2.0, FINEST = 4.0, ROUND = 1.0 + 1.0e-6;
-  const Cells cells = c.cells(c.disc.cut, [](int) {
-    return true;
-  });
+  const Cells cells(c.atom->x, c.atom->nlocal + c.atom->nghost, c.disc.dim, c.disc.cut);
   // fluid for which meets(i, j) holds with any of its neighbors
   const auto fluid_that = [&](auto meets) {
     return find_particles(c.atom, c.world, [&](int i) {

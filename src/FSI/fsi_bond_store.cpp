@@ -66,11 +66,7 @@ void BondStore::choose(bool with_images, bool with_places)
 
 bool BondStore::any() const
 {
-  return anywhere(std::any_of(slot, slot + atom->nlocal,
-                              [](int s) {
-                                return s >= 0;
-                              }),
-                  world);
+  return anywhere(atom->nlocal > 0 && *std::max_element(slot, slot + atom->nlocal) >= 0, world);
 }
 
 bool BondStore::is_solid(int i) const

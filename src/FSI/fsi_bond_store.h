@@ -62,7 +62,10 @@ namespace FSI {
     int count(int i) const { return slot[i] < 0 ? 0 : nbond[slot[i]]; }
     // of bonded ones; what fills up the last block has zeros for numbers
     const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
-    double *bond(int i, int k) { return bond_in(slot[i], k); }
+    double *bond(int i, int k)
+    {
+      return &data[(size_t) slot[i] * maxbond * nvalue] + number_of_bond(k, nvalue);
+    }
     const double *bond(int i, int k) const { return numbers(i) + number_of_bond(k, nvalue); }
     // indices of local and ghost atoms, and of images
     const int *partners(int i) const { return &local[first(i)]; }
@@ -82,8 +85,8 @@ namespace FSI {
     bool bonded(int i, int j) const;    // with j
 
     // Takes the reference of local solids that have none: bonds to all neighbors of the same body
-    // where they are now (fsi_bond_maker.cpp). Then what of the energy's integral is whose, of
-    // bonded particles (fsi_quadrature.cpp). All ranks together
+    // where they are now. Then what of the energy's integral is whose, of bonded particles
+    // (fsi_bond_maker.cpp). All ranks together
     void take(const std::vector<int> &bare);
     void find_weights(const std::vector<int> &of);
     // sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
@@ -127,10 +130,6 @@ namespace FSI {
     double *sent = nullptr;
 
     size_t first(int i) const { return (size_t) slot[i] * maxbond; }
-    double *bond_in(int s, int k)
-    {
-      return &data[(size_t) s * maxbond * nvalue] + number_of_bond(k, nvalue);
-    }
     int nwhole() const { return keeps_images ? 2 : 1; }    // numbers of a bond beside its doubles
     int nplace() const;                                    // numbers of a place
     template <class Call> void each_list(Call);

@@ -95,10 +95,8 @@ bool Changes::of_atoms() const
 
 bool Changes::any_mass() const
 {
-  const auto has_mass = [](double m) {
-    return m != 0.0;
-  };
-  return anywhere(std::any_of(atom->rmass, atom->rmass + atom->nlocal, has_mass), world);
+  const int n = atom->nlocal;
+  return anywhere(std::count(atom->rmass, atom->rmass + n, 0.0) < n, world);
 }
 
 std::vector<std::uintptr_t> Changes::present() const

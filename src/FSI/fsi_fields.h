@@ -18,8 +18,10 @@
 #define LMP_FSI_FIELDS_H
 
 #include "fix.h"
+#include "fsi_lammps_access.h"
 #include "fsi_material.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -198,6 +200,29 @@ namespace FSI {
     Message one_array;
     double *carried = nullptr;    // that array
     const Message &message_of(double *rows, int columns);
+  };
+
+  // LAMMPS' exchanges with ghosts, without those that carry none of the chosen particles: both ends
+  // of an exchange see whether it does, so no rank waits for an empty message. With comm_style
+  // tiled they are LAMMPS' own.
+  class Swaps : protected Pointers {
+   public:
+    explicit Swaps(LAMMPS *lmp) : Pointers(lmp), chosen(false) {}
+    void find(const std::function<bool(int)> &is_chosen);    // whenever ghosts are new
+    // for a pair style or a fix, which packs and unpacks the chosen particles only; size: numbers
+    // of each, 0: comm_forward, comm_reverse
+    template <class Owner> void forward(Owner *, int size = 0);
+    template <class Owner> void reverse(Owner *, int size = 0);
+
+   private:
+    struct Swap : Exchange {
+      std::vector<int> sent;    // chosen atoms of the list
+      int arriving = 0;         // chosen ones of the ghosts
+    };
+    bool chosen;
+    std::vector<Swap> swaps;
+    std::vector<double> out, in;
+    double *pass(int to, int n, int from, int most);
   };
 
   // The numbers of atom i that the nth fix of a restart file left there; all begin with their

@@ -19,11 +19,9 @@
 #define LMP_FSI_HUB_H
 
 #include "fix.h"
-#include "fsi_body_forces.h"
 #include "fsi_material.h"
 #include "fsi_walls.h"
 
-#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -120,6 +118,32 @@ namespace FSI {
 
   // a skin of 0.4 spacings, in place of the one that LAMMPS has before any command neighbor
   void choose_skin(LAMMPS *, double dx);
+
+  // Body forces per mass: each fix gravity as it acts in this step.
+  class BodyForces : protected Pointers {
+   public:
+    explicit BodyForces(LAMMPS *lmp) : Pointers(lmp) {}
+    void find();                                  // before a run
+    void evaluate(const std::vector<State> &);    // at the time of the step
+    // Energy that this rank's particles have lost because fields changed in the last evaluate(),
+    // taken in the middle between two steps. Those of the group are half a step further.
+    double work(const std::vector<State> &, int groupbit) const;
+    std::array<double, 3> on(int i) const;    // atom i, over its mass
+    double potential(int i) const;            // its gravitational energy, where it is now
+
+    struct Field {
+      Fix *fix = nullptr;
+      int mask = 0;    // of its group; 0 if it is disabled
+      bool varies = false;
+      double g[3] = {}, change[3] = {};
+    };
+    std::vector<Field> all;
+    std::vector<std::array<double, 3>> of_type;    // sum of those that act on all its particles
+
+   private:
+    void find_whole_types(const std::vector<State> &);
+    std::vector<int> acts_on_all, warned;    // each field, type by type
+  };
 
   // What fix fsi/kk has in the place of loops on the host.
   struct OnDevice {

@@ -15,8 +15,8 @@
 // members. There are no accessors for them:
 //
 //   Modify      which parts of a restart file no fix has taken (fsi_record: IDs that have changed)
-//   CommBrick   its exchanges with ghosts (fsi_swaps: without those that carry nothing)
-//   FixGravity  whether it is disabled, whether it has variables (fsi_body_forces)
+//   CommBrick   its exchanges with ghosts (fsi_fields: without those that carry nothing)
+//   FixGravity  whether it is disabled, whether it has variables (fsi_hub)
 //   Fix         its number (fsi_changes: another one may be at the address of one that is gone)
 //   FixRigid, FixRigidSmall
 //               state of their bodies, read and written (fsi_clamps: they take the step of all)

@@ -265,26 +265,30 @@ class MaterialReader : protected Pointers {
 
 }    // namespace
 
+// what rank 0 has, on all
+static std::vector<Material> share(LAMMPS *lmp, std::vector<Material> found)
+{
+  int n = found.size();
+  MPI_Bcast(&n, 1, MPI_INT, 0, lmp->world);
+  found.resize(n);
+  MPI_Bcast(found.data(), static_cast<int>(n * sizeof(Material)), MPI_BYTE, 0, lmp->world);
+  return found;
+}
+
 std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file,
                                           const std::vector<std::string> &names,
                                           const std::map<std::string, std::string> &given)
 {
-  std::vector<Material> found(names.size());
+  std::vector<Material> found;
   if (lmp->comm->me == 0) found = MaterialReader(lmp).find(file, names, given);
-  MPI_Bcast(found.data(), static_cast<int>(found.size() * sizeof(Material)), MPI_BYTE, 0,
-            lmp->world);
-  return found;
+  return share(lmp, found);
 }
 
 std::vector<Material> FSI::read_all_materials(LAMMPS *lmp, const std::string &file)
 {
   std::vector<Material> found;
   if (lmp->comm->me == 0) found = MaterialReader(lmp).read(file);
-  int n = found.size();
-  MPI_Bcast(&n, 1, MPI_INT, 0, lmp->world);
-  found.resize(n);
-  MPI_Bcast(found.data(), static_cast<int>(n * sizeof(Material)), MPI_BYTE, 0, lmp->world);
-  return found;
+  return share(lmp, found);
 }
 
 std::string FSI::describe(const Material &m)

@@ -16,7 +16,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_fsi.h"
 #include "fsi_cells.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"

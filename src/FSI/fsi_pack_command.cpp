@@ -53,11 +53,6 @@ FSIPack::FSIPack(LAMMPS *lmp) : Command(lmp) {}
 
 FSIPack::~FSIPack() = default;
 
-double FSIPack::distance(int i, double *outward) const
-{
-  return surface->distance(atom->x[i], band, outward);
-}
-
 // part of a cell that is inside a plane, whose distance from the cell's middle is r
 static double part_behind(double r, const double *normal, const double *size, int dim)
 {
@@ -160,8 +155,8 @@ std::vector<char> FSIPack::deepest(int bit, double n) const
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & bit) || !step->walls.is_before_planes(atom->x[i])) continue;
-    key[i] =
-        std::floor(1.0e6 * distance(i, outward) / band + 0.5) + part_by_place(atom->x[i], domain);
+    key[i] = std::floor(1.0e6 * surface->distance(atom->x[i], band, outward) / band + 0.5) +
+        part_by_place(atom->x[i], domain);
   }
   const double limit = limit_of(key, n, -2.0e6, 2.0e6, world);
   std::vector<char> chosen(atom->nlocal);
@@ -226,7 +221,7 @@ double FSIPack::keep_off(int i, double side)
   double outward[3], *const x = atom->x[i];
   const double least = BESIDE * disc->dx_of(atom->type[i]);
   for (int k = 0; k < domain->dimension + 1; k++) {
-    const double r = distance(i, outward);
+    const double r = surface->distance(atom->x[i], band, outward);
     if (side * r >= least || std::fabs(r) >= band) return k == 0 ? std::fabs(r) : 0.0;
     for (int d = 0; d < domain->dimension; d++) x[d] += (side * least - r) * outward[d];
   }
@@ -307,7 +302,8 @@ void FSIPack::pack(int steps)
       if (!(mask & (body | fluid | filler)) || mask & distant ||
           !step->walls.is_before_planes(atom->x[i]))
         continue;
-      const double r = distance(i, outward), dx = disc->dx_of(atom->type[i]);
+      const double r = surface->distance(atom->x[i], band, outward),
+                   dx = disc->dx_of(atom->type[i]);
       if (std::fabs(r) >= band) mask |= distant;    // and stays where it is
       mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
       judged[i] = mobility[i] == 1.0 && !(mask & filler);

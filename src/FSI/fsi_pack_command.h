@@ -51,7 +51,6 @@ class FSIPack : public Command {
   // bits of groups, 0: there is none; still: a part of the body that stays as it is
   int body = 0, fluid = 0, still = 0, filler = 0, gone_at_once = 0, distant = 0;
   double band = 0.0;    // from the surface, in which particles move
-  double distance(int i, double *outward) const;
   double volume_inside() const, volume_of_still() const;
   double volume_of_cell(const double *middle, const double *sides, double finest) const;
   double part_inside(int i) const;

@@ -171,7 +171,9 @@ class OfSimplices : public Surface {
     if (faces.empty()) error->all(FLERR, "{} has no surface", label);
     check_closed();
     find_normals();
-    if (volume() < 0.0) turn();
+    if (!(volume() < 0.0)) return;
+    for (auto &f : faces) std::swap(f[0], f[1]);
+    find_normals();
   }
   std::string name() const override { return label; }
 
@@ -260,12 +262,6 @@ class OfSimplices : public Surface {
         of_points[f[k]] = of_points[f[k]] + angle * n;
       }
     }
-  }
-
-  void turn()
-  {
-    for (auto &f : faces) std::swap(f[0], f[1]);
-    find_normals();
   }
 
   // the nearest point of a face and the normal there, if its squared distance is less

@@ -19,7 +19,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 class LAMMPS;

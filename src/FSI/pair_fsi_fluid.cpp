@@ -171,11 +171,6 @@ const std::vector<Row> &PairFSIFluid::rows_with_walls(size_t level) const
   return pairs.near_rows(pairs.of(level, PairSet::WALLS));
 }
 
-bool PairFSIFluid::handles(int a, int b) const
-{
-  return a == FLUID || b == FLUID;
-}
-
 State PairFSIFluid::make_state(const Material &m) const
 {
   // a solid's state is that of pair_style fsi/solid, if there is one: it enters its own afterwards
@@ -743,39 +738,39 @@ template <int D, bool FILLS> void PairFSIFluid::displacements(double dt)
   }
 }
 
-// sums of what depends on the distance of a pair, walls' images included: sum(meeting, rows, both,
-// mirror, particles), of neighbors only if both
-template <class Sum>
-void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particles, Sum sum)
+struct PairFSIFluid::Rows {
+  const PairSet &set;
+  const std::vector<Row> &rows;
+  const Mirror *mirror;
+  FluidParticles in;
+};
+
+// sums of what depends on the distance of a pair, walls' images included: calls sum() for all Rows
+template <class Sum> void PairFSIFluid::distance_sums(const FluidParticles &particles, Sum sum)
 {
   pairs.for_all(step->walls, nullptr,
                 [&](const PairSet &m, const std::vector<Row> &rows,
                     const std::vector<double> &visible, const Mirror *mirror, int) {
-                  const bool both = m.kind == WITH_FLUID || others_too;
-                  sum(m, rows, both, mirror, of_rows(particles, m, rows, visible));
+                  sum(Rows{m, rows, mirror, of_rows(particles, m, rows, visible)});
                 });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
-  distance_sums(solids_too, particles_at(nullptr),
-                [&](const PairSet &m, const std::vector<Row> &which, bool both,
-                    const Mirror *mirror, const FluidParticles &particles) {
-                  m.loops->number_density(m.kind, which, both, mirror, particles, vectors(atom->x),
-                                          psi);
-                });
+  distance_sums(particles_at(nullptr), [&](const Rows &r) {
+    const bool both = r.set.kind == WITH_FLUID || solids_too;
+    r.set.loops->number_density(r.set.kind, r.rows, both, r.mirror, r.in, vectors(atom->x), psi);
+  });
 }
 
 void PairFSIFluid::add_position_divergence(double *div)
 {
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
-  distance_sums(false, particles_at(nullptr),
-                [&](const PairSet &m, const std::vector<Row> &which, bool both,
-                    const Mirror *mirror, const FluidParticles &particles) {
-                  m.loops->position_divergence(which, both, mirror, particles, vectors(atom->x),
-                                               volume.data(), div);
-                });
+  distance_sums(particles_at(nullptr), [&](const Rows &r) {
+    r.set.loops->position_divergence(r.rows, r.set.kind == WITH_FLUID, r.mirror, r.in,
+                                     vectors(atom->x), volume.data(), div);
+  });
 }
 
 void PairFSIFluid::add_gradient_sum(double *s)
@@ -793,11 +788,9 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
     p.vol = 1.0 / disc->resolution[type[i]].psi_bulk;
   });
   std::vector<double> sums(ROW * nall, 0.0);
-  distance_sums(false, particles,
-                [&](const PairSet &m, const std::vector<Row> &which, bool, const Mirror *mirror,
-                    const FluidParticles &in) {
-                  m.loops->shifts(m.kind, which, mirror, in, m.wdx, sums.data());
-                });
+  distance_sums(particles, [&](const Rows &r) {
+    r.set.loops->shifts(r.set.kind, r.rows, r.mirror, r.in, r.set.wdx, sums.data());
+  });
   for (size_t i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d] / -volume_of<D>(i);
 }

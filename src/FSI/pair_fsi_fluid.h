@@ -81,7 +81,7 @@ class PairFSIFluid : public PairFSI {
   const std::vector<FSI::Row> &rows_with_walls(size_t level) const;
 
  protected:
-  bool handles(int, int) const override;
+  bool handles(int a, int b) const override { return a == FSI::FLUID || b == FSI::FLUID; }
   bool needs_neighbors() override { return !has_all_pairs(); }
   // walls of held solid particles need no pair style of their own; wall particles act on fluids
   // only
@@ -182,7 +182,8 @@ class PairFSIFluid : public PairFSI {
   int no_fdotr_before = 0;
   void take_virial(Pair *of);
   FSI::Contact guard_of(int type, double spacing) const;
-  template <class Sum> void distance_sums(bool others_too, const FSI::FluidParticles &, Sum);
+  struct Rows;    // of pairs of one set, or of images of these, and how their loop sees particles
+  template <class Sum> void distance_sums(const FSI::FluidParticles &, Sum);
 };
 
 }    // namespace LAMMPS_NS

@@ -70,7 +70,7 @@ def test_fix_fsi_knows_no_style():
 def test_no_style_keeps_fix_fsi():
     """Styles and parts of a step take objects from fix fsi when a run begins: none keeps the fix, to call it back in a step."""
     headers = [file for file in SOURCES.values() if file.suffix == ".h" and file.name != "fix_fsi.h"]
-    assert len(headers) > 80 and [file.name for file in headers if re.search(r"\bFixFSI\b", file.read_text())] == []
+    assert len(headers) > 70 and [file.name for file in headers if re.search(r"\bFixFSI\b", file.read_text())] == []
 
 
 def test_other_packages_are_apart():
