@@ -35,8 +35,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), tensor(false), nmax(0), shear(nullptr)
+ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
   static const std::vector<std::string> names = {

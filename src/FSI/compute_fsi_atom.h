@@ -49,15 +49,15 @@ class ComputeFSIAtom : public Compute {
   };
   // clang-format on
   std::vector<int> quantity;
-  bool tensor;    // is one of them of the stress?
+  bool tensor = false;    // is one of them of the stress?
   std::vector<double> psi;
-  int nmax;
+  int nmax = 0;
   const FSI::Discretization *disc = nullptr;
   const FSI::StepState *step = nullptr;
   class FixFSIStress *fix_stress;    // null: no solid has one
   class PairFSISolidTL *solid_tl;    // null: there is none
 
-  const FSI::Shear *shear;    // null: nothing needs it
+  const FSI::Shear *shear = nullptr;    // null: nothing needs it
 
   class PairFSIFluid *needs_shear() const;
   void grow();

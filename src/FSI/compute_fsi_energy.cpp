@@ -38,11 +38,6 @@ ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(
   vector = new double[size_vector];
 }
 
-ComputeFSIEnergy::~ComputeFSIEnergy()
-{
-  delete[] vector;
-}
-
 void ComputeFSIEnergy::init()
 {
   FixFSI::find(lmp, "Compute fsi/energy");

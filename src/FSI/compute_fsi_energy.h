@@ -30,7 +30,7 @@ namespace LAMMPS_NS {
 class ComputeFSIEnergy : public Compute, public FSI::Part {
  public:
   ComputeFSIEnergy(class LAMMPS *, int, char **);
-  ~ComputeFSIEnergy() override;
+  ~ComputeFSIEnergy() override { delete[] vector; }
   void init() override;
   double compute_scalar() override;
   void compute_vector() override;

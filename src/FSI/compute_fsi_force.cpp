@@ -29,8 +29,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), sum{}, origin{}, reduced(false)
+ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   FSI::Keywords keywords(lmp, "compute fsi/force");
   keywords.key("split").logical(split, false);
@@ -39,11 +38,6 @@ ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
   size_vector = split ? 12 : 6;
   extvector = 1;
   vector = new double[size_vector];
-}
-
-ComputeFSIForce::~ComputeFSIForce()
-{
-  delete[] vector;
 }
 
 void ComputeFSIForce::init()

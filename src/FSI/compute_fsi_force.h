@@ -33,7 +33,7 @@ namespace FSI {
 class ComputeFSIForce : public Compute {
  public:
   ComputeFSIForce(class LAMMPS *, int, char **);
-  ~ComputeFSIForce() override;
+  ~ComputeFSIForce() override { delete[] vector; }
   void init() override;
   void compute_vector() override;
 
@@ -52,8 +52,8 @@ class ComputeFSIForce : public Compute {
  private:
   // about and from `origin`
   enum { FORCE = 0, TORQUE = 3, VISCOUS = 6, VISCOUS_TORQUE = 9, MOMENT = 12, MASS = 15, NSUM };
-  double sum[NSUM], origin[3];
-  bool reduced;    // over ranks, since the last forces
+  double sum[NSUM] = {}, origin[3] = {};
+  bool reduced = false;    // over ranks, since the last forces
   const FSI::Discretization *disc = nullptr;
 
   bool counts(int) const;

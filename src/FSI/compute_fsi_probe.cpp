@@ -41,8 +41,7 @@ static constexpr double MOST = 1.0e7;    // points of one place
 static constexpr double REACH = 2.0;     // of a fit in spacings: it has enough at a corner, too
 static constexpr double INDEPENDENCE = 0.05;    // a direction has it with two rows or more
 
-ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1)
+ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   static const std::vector<std::string> names = {"p",     "rho", "vx", "vy", "vz", "fill",
                                                  "level", "wet", "ux", "uy", "uz"};

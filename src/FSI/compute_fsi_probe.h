@@ -60,7 +60,7 @@ class ComputeFSIProbe : public Compute {
   std::vector<Sampled> sampled;
   void read_sampled(const std::string &word);
   void find_sampled();
-  bool extrapolate;
+  bool extrapolate = false;
 
   struct Particle {
     int i = 0;
@@ -85,8 +85,8 @@ class ComputeFSIProbe : public Compute {
   };
   std::vector<Place> places;
   std::vector<double> points, sums, all;
-  int nsums;    // per point: fluid, solid; or fluid and one for each quantity
-  bigint listed;
+  int nsums = 0;    // per point: fluid, solid; or fluid and one for each quantity
+  bigint listed = -1;
 
   const FSI::Discretization *disc = nullptr;
   const FSI::StepState *step = nullptr;

@@ -40,8 +40,7 @@ static std::string face(const Wall &w)
   return std::string(1, "xyz"[w.axis]) + (w.side > 0.0 ? "lo" : "hi");
 }
 
-FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), guard(0.1), reflected(0)
+FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
 

@@ -67,8 +67,8 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
   void add_range(FSI::Wall &, int along, double low, double high) const;
   void check_symmetry() const;
   void warn_of_slip(const std::vector<bool> &slip_given) const;
-  double guard;    // smallest distance to a wall, in spacings
-  bigint reflected;
+  double guard = 0.1;    // smallest distance to a wall, in spacings
+  bigint reflected = 0;
   struct Turn {    // a reflection of this step
     tagint tag;
     int wall;

@@ -73,9 +73,9 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   // if that is not beyond the kernel's support
   template <class F> void for_pairs(size_t level, double cutsq, F f) const;
   void sum_up();
-  double **sum =
-      nullptr;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
-                  // W, d d W, p d W, d = x_wall - x; with turns of d W
+  // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d W, d d W, p d W,
+  // d = x_wall - x; with turns of d W
+  double **sum = nullptr;
   int nsum = 0, first_moment, first_stiffness;
   bool turns = false;              // walls that fluid sticks to may
   std::vector<int> first, near;    // of each local member, where its neighbors in the wall begin;

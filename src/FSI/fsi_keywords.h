@@ -184,8 +184,8 @@ namespace FSI {
    public:
     enum Source { FREE, NUMBER, EQUAL, ATOM };    // FREE: none was given
 
+    // command: as a user writes it, fix fsi/stream
     Values(LAMMPS *lmp, const std::string &command, int n) :
-        // as a user writes it: fix fsi/stream
         Pointers(lmp), command(command), list(n)
     {
     }

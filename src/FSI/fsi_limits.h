@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Limits of the time step, by cause: fix fsi/dt chooses by them, fix fsi/report says how near a run
-// came to them.
+// Limits of the time step, by cause: fix fsi/dt chooses by them, advice before a run compares the
+// time step with them.
 
 #ifndef LMP_FSI_LIMITS_H
 #define LMP_FSI_LIMITS_H

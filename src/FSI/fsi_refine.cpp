@@ -35,8 +35,7 @@ using namespace FSI;
 static constexpr double ROUND_OFF = 1.0e-12;    // of differences of distances
 
 Zones::Zones(LAMMPS *lmp, const std::string &label) :
-    Pointers(lmp), label(label), body_bit(0), nested(false), can_move(false), ahead(0.0),
-    directions(split_directions(domain->dimension))
+    Pointers(lmp), label(label), directions(split_directions(domain->dimension))
 {
 }
 

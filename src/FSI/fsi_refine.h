@@ -176,11 +176,11 @@ namespace FSI {
     std::vector<std::string> region_ids;
     std::vector<Region *> regions;
     std::string body_id;
-    int body_bit;
+    int body_bit = 0;
     std::vector<double> distances, away;    // of zones; per local particle, from the body
     std::vector<double> wider;              // of zones than the finest, the only one that is given
-    bool nested, can_move;                  // nested: see wider
-    double ahead;                           // of positions, time
+    bool nested = false, can_move = false;            // nested: see wider
+    double ahead = 0.0;                               // of positions, time
     std::vector<std::array<double, 3>> directions;    // in which a region grows
   };
 
