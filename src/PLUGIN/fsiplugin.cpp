@@ -38,6 +38,7 @@
 #include "fix_fsi_wall_particle.h"
 #include "fix_fsi_watch.h"
 #include "fsi_commands.h"
+#include "fsi_pack_command.h"
 #include "lammps.h"
 #include "library.h"
 #include "pair_fsi_fluid_omp.h"
@@ -152,6 +153,11 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "FSI_REFERENCE", &create_with_arguments<FixFSIReference>);
   two("fix", "FSI_HISTORY", &create_with_arguments<FixFSIHistory>);
   two("fix", "fsi", &create_with_arguments<FixFSI>);
+  one("command", "fsi/clamp", &create<FSIClamp>);
+  one("command", "fsi/displace", &create<FSIDisplace>);
+  one("command", "fsi/dump", &create<FSIDump>);
   one("command", "fsi/material", &create<FSIMaterial>);
+  one("command", "fsi/pack", &create<FSIPack>);
+  one("command", "fsi/run", &create<FSIRun>);
   one("command", "fsi/set", &create<FSISet>);
 }

@@ -50,6 +50,13 @@ def test_styles_are_not_compiled_in(plain, tmp_path):
     assert "Unrecognized atom style 'fsi'" in load(plain, tmp_path, "atom_style fsi\n").output
 
 
+def test_it_has_every_style(plain, tmp_path):
+    styles = {(kind.lower(), name) for package in ("FSI", "FSI-CLASSIC", "OPENMP") for path in (paths.ROOT / "src" / package).glob("*fsi*.h")
+              for kind, name in re.findall(r"^(Pair|Fix|Compute|Command)Style\(([\w/]+),", path.read_text(), re.MULTILINE)}
+    result = load(plain, tmp_path, LOAD + "plugin list\n")
+    assert len(styles) > 25 and set(re.findall(r": +(\w+) style plugin ([\w/]+)", result.output)) == styles
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_plugin_load(plain, tmp_path, ranks):
     text = SCENE.text("2 * *" if ranks > 1 else "* * *") + watch() + "run 100\n"
