@@ -43,14 +43,14 @@ def frames(folder):
 
 
 def picture(path, flow, found):
-    y = np.linspace(0, L, 101)
-    curves = []
+    y = np.linspace(0, L, 21)
+    curves, theory = [], []
     for frame, colour in zip(found, COLOURS):
         order = np.argsort(frame["y"])
         t = frame.time * NU / L**2
-        curves.append((y / L, exact(flow, y, t) / V, "", "black"))
+        theory.append((y / L, exact(flow, y, t) / V, "" if theory else "theory", plot.GREY))
         curves.append((frame["y"][order] / L, frame["vx"][order] / V, f"t = {t:.4g}", colour))
-    plot.lines(path, "y / L", "velocity / V", curves)
+    plot.lines(path, "y / L", "velocity / V", curves, theory)
 
 
 def main(folder):
