@@ -100,7 +100,7 @@ def law(frame, acceleration, dim, slip, eta, dt, guard, linear, omega):
     F = -(p[i] * V[i]**2 + p[j] * V[j]**2)[:, None] * g[:, None] * d
     mixed = wall[i] != wall[j]
     u = np.where(wall[:, None], vw, v)
-    shear = (V[i] * V[j] * 2 * eta * g)[:, None] * (u[i] - u[j])
+    shear = (m[i] * m[j] / 1000**2 * 2 * eta * g)[:, None] * (u[i] - u[j])
     F += np.where(mixed & slip, 0.0, 1.0)[:, None] * shear
     R = guard * DX
     F += np.where(mixed & (r < R), 1000 * eos * R**(dim - 2) * (R / r - 1), 0.0)[:, None] * d

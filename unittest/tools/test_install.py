@@ -61,9 +61,9 @@ def test_inside_a_lammps_tree(tmp_path, monkeypatch, form):
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     command("cmake", "-S", tree / "cmake", "-B", build, "-G", "Ninja", *launcher, *options)
     headers = "".join(h.read_text() for h in (build / "styles").glob("style_*.h"))
-    for name in ("atom_vec_fsi", "pair_fsi_fluid", "pair_fsi_fluid_omp", "pair_fsi_solid", "pair_fsi_solid_tl", "fix_fsi", "compute_fsi_atom", "fsi_set"):
+    for name in ("atom_vec_fsi", "pair_fsi_fluid", "pair_fsi_fluid_omp", "pair_fsi_solid", "pair_fsi_solid_tl", "fix_fsi", "compute_fsi_atom", "fsi_commands"):
         assert f'{name}.h"' in headers
     objects = [line.split(":")[0] for line in command("ninja", "-C", build, "-t", "targets", "all").splitlines()
-               if any(line.split(":")[0].endswith(f"/{name}.cpp.o") for name in ("atom_vec_fsi", "fsi_set", "fsi_material", "fix_fsi_spectrum"))]  # the last without FFTW
+               if any(line.split(":")[0].endswith(f"/{name}.cpp.o") for name in ("atom_vec_fsi", "fsi_commands", "fsi_material", "fix_fsi_spectrum"))]  # the last without FFTW
     assert len(objects) == 4
     command("ninja", "-C", build, *objects)
