@@ -188,7 +188,7 @@ void FixFSIMove::go_on_from_here()
   const double round = ROUND * FixFSI::find(lmp, "Fix fsi/move")->disc.dx, t = now() - origin;
   if (motion == VARIABLE && (evaluated < 0 || given->of_atoms()))
     given->evaluate(igroup, 0, 2 * VELOCITY);
-  for (int k = 0; k < 3 && evaluated < 0; k++) last[k] = given->number(k);
+  if (evaluated < 0) remember();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     double to[3], v[3], off[3] = {};
@@ -207,6 +207,11 @@ void FixFSIMove::go_on_from_here()
     domain->unmap(atom->x[i], atom->image[i], original[i]);
     turn_back(original[i], t);
   }
+}
+
+void FixFSIMove::remember()
+{
+  for (int k = 0; k < 3; k++) last[k] = given->number(k);
 }
 
 void FixFSIMove::initial_integrate(int)
@@ -311,7 +316,7 @@ void FixFSIMove::move(When when)
     given->evaluate(igroup, 0, 2 * VELOCITY);
     update->atime = clock;
     if (back == 0.0) evaluated = update->ntimestep;
-    for (int k = 0; k < 3 && when == END; k++) last[k] = given->number(k);
+    if (when == END) remember();
   }
   double **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {

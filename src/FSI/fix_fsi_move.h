@@ -89,6 +89,7 @@ class FixFSIMove : public FSI::FixFields, public FSI::Part {
   void follow(const double *from, double t, double *x, double *v) const;
   void where(int i, double t, double *x, double *v) const;
   void go_on_from_here();
+  void remember();    // displacements that the variables have now
   void turn_back(double *x, double t) const;
   void move(When);
 };

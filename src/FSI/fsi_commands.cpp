@@ -35,6 +35,7 @@
 #include "variable.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -45,21 +46,27 @@ using namespace FSI;
 
 static constexpr double NEXT = 1.2;    // spacings: the next column, not the diagonal neighbor
 
+// the groups, arguments `first` group-ID and `second` group-ID, of command fsi/`name`; their names
+static std::array<int, 2> two_groups(LAMMPS *lmp, const std::string &name, const std::string &first,
+                                     const std::string &second, int narg, char **arg,
+                                     std::string (&names)[2])
+{
+  if (lmp->domain->box_exist == 0)
+    lmp->error->all(FLERR, "Fsi/{} command before simulation box is defined", name);
+  Keywords keywords(lmp, "fsi/" + name);
+  keywords.argument(first + " group-ID").word(names[0], "");
+  keywords.argument(second + " group-ID").word(names[1], "");
+  keywords.parse(narg, arg);
+  return {group_of(lmp, "Fsi/" + name, names[0]), group_of(lmp, "Fsi/" + name, names[1])};
+}
+
 void FSIClamp::command(int narg, char **arg)
 {
-  if (domain->box_exist == 0)
-    error->all(FLERR, "Fsi/clamp command before simulation box is defined");
   std::string names[2];
-  Keywords keywords(lmp, "fsi/clamp");
-  keywords.argument("free group-ID").word(names[0], "");
-  keywords.argument("clamp group-ID").word(names[1], "");
-  keywords.parse(narg, arg);
-  int bit[2];
-  for (int k = 0; k < 2; k++) {
-    const int igroup = group_of(lmp, "Fsi/clamp", names[k]);
-    if (igroup == 0) error->all(FLERR, "Fsi/clamp group-ID all: expected a group of a part");
-    bit[k] = group->bitmask[igroup];
-  }
+  const auto igroup = two_groups(lmp, "clamp", "free", "clamp", narg, arg, names);
+  if (igroup[0] == 0 || igroup[1] == 0)
+    error->all(FLERR, "Fsi/clamp group-ID all: expected a group of a part");
+  const int bit[] = {group->bitmask[igroup[0]], group->bitmask[igroup[1]]};
   const Discretization &disc = FixFSI::find(lmp, "Fsi/clamp")->disc;
   lmp->init();    // materials are entered there
   renew_ghosts(lmp);
@@ -160,15 +167,9 @@ std::vector<double> FSIDisplace::find_covered(const Discretization &disc, const 
 
 void FSIDisplace::command(int narg, char **arg)
 {
-  if (domain->box_exist == 0)
-    error->all(FLERR, "Fsi/displace command before simulation box is defined");
   std::string names[2];
-  Keywords keywords(lmp, "fsi/displace");
-  keywords.argument("fluid group-ID").word(names[0], "");
-  keywords.argument("body group-ID").word(names[1], "");
-  keywords.parse(narg, arg);
-  int bit[2];
-  for (int k = 0; k < 2; k++) bit[k] = group->bitmask[group_of(lmp, "Fsi/displace", names[k])];
+  const auto igroup = two_groups(lmp, "displace", "fluid", "body", narg, arg, names);
+  const int bit[] = {group->bitmask[igroup[0]], group->bitmask[igroup[1]]};
   const Discretization &disc = FixFSI::find(lmp, "Fsi/displace")->disc;
   const NeighList *const list = neighbors();
   const int *const type = atom->type, *const mask = atom->mask;
