@@ -162,7 +162,8 @@ namespace FSI {
     double delta = 0.0;                               // of density diffusion; 0: none
     const double *pressure_over_density = nullptr;    // per particle, with sums
     double wdx = 0.0;                                 // W(dx), for shifting
-    bool fills = false;                               // shifting: the fluid has no surface
+    WallShift wall_shift;
+    bool fills = false;    // shifting: the fluid has no surface
     double reach = 0.0;
   };
 
@@ -204,8 +205,8 @@ namespace FSI {
     // row_of_forces(D); with mirror the sum of the forces on all particles to total[D]
     virtual void forces(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &,
                         const ForceLaws &, double *force, double *total, PairSums *sums) const = 0;
-    // adds the sums of particle shifting alone, times -V_i, to rows of Shift<D>::row(false)
-    virtual void shifts(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &, double wdx,
+    // adds the plain sums of particle shifting alone, times -V_i, to rows of Shift<D>::row(false)
+    virtual void shifts(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &,
                         double *shift) const = 0;
     // adds W_ij, by the neighbors' share, to sum; of the neighbors only if both
     virtual void number_density(PairKind, RowSpan, bool both, const Mirror *mirror,

@@ -42,7 +42,7 @@ namespace FSI {
                    SHIFTS = FLAGS & Flag::SHIFT;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
-    const Shift<D> law(laws.wdx);
+    const Shift<D> law(laws.wdx, laws.wall_shift);
     T reachsq = laws.reach * laws.reach, by_diffusion = 0.0;
     Sieve<T, !IMAGE> sieve;
     ShiftOfRow<T, D, FLUID, FLAGS> shift_of(mirror);
@@ -63,8 +63,10 @@ namespace FSI {
         relate<T, K, KIND, FLAGS>(kernel, in, pi, pj, j, weight, m);
         const auto shift_pair = [&](const T *rate_j) FSI_INLINE_LAMBDA {
           const T vol_j = (FLAGS & Flag::UNEQUAL) ? constant.backfill * pj.vol : pj.vol;
-          shift_of.take(law.weight(m.w), in, i, m.rsq, pi.vol * vol_j * m.g, m.x, m.v, rate_j, j,
-                        shift);
+          // beside a surface the wall is no half-space, in which its factor is right
+          constexpr bool STEEP = FLUID || (FLAGS & Flag::EDGES);
+          shift_of.take(STEEP ? law.weight(m.w) : law.weight_of_wall(m.w), in, i, m.rsq,
+                        pi.vol * vol_j * m.g, m.x, m.v, rate_j, j, shift);
         };
         if constexpr (SHIFTS && !FLUID) shift_pair(nullptr);
         const T s = flow<T, K, KIND, FLAGS>(kernel, in, constant, j, weight, m);
@@ -163,13 +165,12 @@ namespace FSI {
   // the sums of particle shifting alone
   template <class T, class K, int FLAGS>
   FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror,
-                             const K kernel, const FluidParticles in, const double wdx,
+                             const K kernel, const FluidParticles in,
                              double (*const shift)[shift_row<K::DIM>(Flag::EDGES)])
   {
     constexpr int D = K::DIM, WITH = (FLAGS & Flag::IMAGES) | Flag::EDGES;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
-    const Shift<D> law(wdx);
     ShiftOfRow<T, D, (FLAGS & Flag::BOTH) != 0, WITH> shift_of(mirror);
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
@@ -184,14 +185,14 @@ namespace FSI {
         if (IMAGE) pj.reflect(mirror);
         T x[D];
         difference(pi.x, pj.x, x);
-        const T rsq = product(x, x), r = root(rsq);
-        T g = kernel.gradient(r);
+        const T rsq = product(x, x);
+        T g = kernel.gradient(root(rsq));
         if (!(FLAGS & Flag::BOTH)) g = cut_off(in, j, g);
         if (IMAGE) g = weight * g;
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
-        const T no_rate = 0.0;
-        shift_of.take(law.weight(kernel.W(r)), in, i, rsq, pi.vol * (backfill * pj.vol) * g, x,
-                      nullptr, &no_rate, j, shift);
+        const T plain = 1.0, no_rate = 0.0;
+        shift_of.take(plain, in, i, rsq, pi.vol * (backfill * pj.vol) * g, x, nullptr, &no_rate, j,
+                      shift);
       });
       shift_of.close(shift[i]);
     }
@@ -388,7 +389,7 @@ namespace FSI {
     }
 
     void shifts(PairKind kind, const RowSpan rows, const Mirror *image, const FluidParticles &in,
-                double wdx, double *shift) const override
+                double *shift) const override
     {
       const Mirror mirror = image ? *image : Mirror();
       const bool fluid = kind == WITH_FLUID;
@@ -396,7 +397,7 @@ namespace FSI {
           (image ? Flag::IMAGES : 0) | (fluid ? Flag::BOTH : 0) | partly(in), rows, "shifts",
           Flag::ShiftsTable(), [&](auto number, auto, auto flags) FSI_INLINE_LAMBDA {
             shift_rows<decltype(number), K, flags()>(
-                rows.first, rows.size(), mirror, kernel, in, wdx,
+                rows.first, rows.size(), mirror, kernel, in,
                 reinterpret_cast<double(*)[shift_row<D>(Flag::EDGES)]>(shift));
           });
     }

@@ -143,6 +143,14 @@ namespace FSI {
   // the price of sound: half as much again in forces. Angular momentum and energy are not kept
   // exactly; the energy ledger knows nothing of shifting.
 
+  // Of a fluid that fills its box neighbors in walls and solids have the factor
+  //   1 + a max(0, W_ij - W(2 dx))/W(dx),
+  // where a lets a lattice that goes on beyond their face rest. The steep power would hold fluid to
+  // their places one by one, which the force of pressure does not know: drag that is not there.
+  struct WallShift {
+    double share = 0.0, least = 0.0;    // a, W(2 dx)/W(dx)
+  };
+
   template <int D> struct Shift {
     // Sums of a particle. Where the fluid may have a surface: the weighted and the plain sum of V_j
     // grad_i W_ij, and the divergence. Where it fills its box: the weighted sum and, of fluid
@@ -154,13 +162,36 @@ namespace FSI {
     static constexpr int row(bool fills) { return (sums(fills) + 1 + 3) / 4 * 4; }
 
     double inv_wdx;    // 1/W(dx)
-    FSI_INLINE explicit Shift(double wdx) : inv_wdx(1.0 / wdx) {}
+    WallShift walls;
+    FSI_INLINE Shift(double wdx, const WallShift &w) : inv_wdx(1.0 / wdx), walls(w) {}
 
     // of W_ij: what grad_i W_ij is multiplied with
     template <class T> FSI_INLINE T weight(const T &w) const
     {
       const T q = w * inv_wdx, qq = q * q;
       return 1.0 + 0.2 * (qq * qq);
+    }
+    // The same of neighbors in walls and solids
+    template <class T> FSI_INLINE T weight_of_wall(const T &w) const
+    {
+      return 1.0 + walls.share * greater(w * inv_wdx - walls.least, T(0.0));
+    }
+    template <class K> static WallShift find_walls(const K &kernel, double dx)
+    {
+      const double wdx = kernel.W(dx), least = kernel.W(2.0 * dx) / wdx;
+      const Shift law(wdx, {1.0, least});
+      const int n = static_cast<int>(kernel.cut / dx) + 1, nz = D == 3 ? n : 0;
+      double steep = 0.0, even = 0.0;
+      for (int k = -nz; k <= nz; k++)
+        for (int j = -n; j <= n; j++)
+          for (int i = 1; i <= n; i++) {
+            const double r = dx * std::sqrt(i * i + j * j + k * k);
+            if (r >= kernel.cut) continue;
+            const double pull = i * kernel.gradient(r), w = kernel.W(r);
+            steep += pull * (law.weight(w) - 1.0);
+            even += pull * (law.weight_of_wall(w) - 1.0);
+          }
+      return {steep / even, least};
     }
 
     // Loops find sums times -V_i: then what a pair is in them is the same for both, but for the

@@ -62,6 +62,7 @@ struct PairFSIFluid::Members {
   std::optional<LightSolids> light_solids;
   std::optional<Shear> shear;
   std::optional<ImplicitViscosity> implicit;
+  WallShift wall_shift;
   // what loops get the address of
   Thin thin_bodies = {};
   Visible seen_pairs = {};
@@ -282,6 +283,9 @@ void PairFSIFluid::init_style()
                                 implicit && sticks_to_solids());
   members->shear.emplace(lmp, *disc, *step, *ghosts, eddies);
   members->implicit.emplace(lmp, *disc, *step, *ghosts);
+  with_kernel(disc->kernel, disc->dim, disc->h, [this](const auto &kernel) {
+    members->wall_shift = Shift<std::decay_t<decltype(kernel)>::DIM>::find_walls(kernel, disc->dx);
+  });
   step->viscosity = nullptr;
   step->threads = nullptr;
   find_ratios();
@@ -691,7 +695,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     for (int i = 0; i < nall; i++)
       pressure_over_density[i] = pressure_of(i, atom, *disc, *step) / atom->rho[i];
 
-  RateLaws laws = {delta, pressure_over_density.data(), 0.0, fills(), 0.0};
+  RateLaws laws = {delta, pressure_over_density.data(), 0.0, members->wall_shift, fills(), 0.0};
   double *const shift = step->shifts ? step->shift[0] : nullptr;
   PairSums sums;
   pairs.for_rates(walls, particles.points,
@@ -789,7 +793,7 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
   });
   std::vector<double> sums(ROW * nall, 0.0);
   distance_sums(particles, [&](const Rows &r) {
-    r.set.loops->shifts(r.set.kind, r.rows, r.mirror, r.in, r.set.wdx, sums.data());
+    r.set.loops->shifts(r.set.kind, r.rows, r.mirror, r.in, sums.data());
   });
   for (size_t i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d] / -volume_of<D>(i);

@@ -153,10 +153,10 @@ class ThreadedLoops : public FluidLoops {
   }
 
   void shifts(PairKind kind, const RowSpan rows, const Mirror *mirror, const FluidParticles &in,
-              double wdx, double *shift) const override
+              double *shift) const override
   {
     run(rows, {{shift, width_of_shift(false)}}, [&](int, const RowSpan part, double *const *to) {
-      loops->shifts(kind, part, mirror, in, wdx, to[0]);
+      loops->shifts(kind, part, mirror, in, to[0]);
     });
   }
 
