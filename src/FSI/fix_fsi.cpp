@@ -119,6 +119,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   if (std::count(disc.thin.begin(), disc.thin.end(), 1.0))
     disc.sight = std::make_shared<Sight>(lmp, disc, step.walls, disc.thin);
 
+  nevery = 1;
   time_integrate = force_reneighbor = create_attribute = restart_global = 1;
   pre_exchange_migrate = 1;
   set_fields();
@@ -217,7 +218,8 @@ void FixFSI::check_pre_no(LAMMPS *lmp, const Discretization *known)
 
 int FixFSI::setmask()
 {
-  return INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
+  return INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE |
+      END_OF_STEP | POST_RUN;
 }
 
 void FixFSI::post_run()
@@ -337,6 +339,13 @@ void FixFSI::final_integrate()
   for (auto *p : parts) p->react();
   kick();
   turn();
+}
+
+// A restart file has a shrink-wrapped box around particles where the step has left them, or it
+// could not be read
+void FixFSI::end_of_step()
+{
+  if (domain->nonperiodic == 2 && update->ntimestep == output->next_restart) domain->reset_box();
 }
 
 // bring density and stress of local and ghost atoms to the time of the positions; not to advance,

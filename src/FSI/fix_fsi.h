@@ -74,6 +74,7 @@ class FixFSI : public FSI::FixFields {
   void pre_exchange() override;
   void pre_force(int) override { update_state(true); }
   void final_integrate() override;
+  void end_of_step() override;
   void post_run() override;
   void set_arrays(int) override;
   void write_restart(FILE *) override;

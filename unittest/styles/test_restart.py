@@ -69,6 +69,16 @@ def test_shifting_beside_wall_particles_goes_on_bit_for_bit(tmp_path, ranks):
     assert differing(whole, rest) == []
 
 
+@pytest.mark.parametrize("ranks", (1, 2))
+def test_shrink_wrapped_box_goes_on_bit_for_bit(tmp_path, ranks):
+    """Particles move on after the lists of the step in which a file is written: its box is around them."""
+    physics = "fsi/material water fluid rho 1000\npair_style fsi/fluid sound 20\npair_coeff * * NULL water\nfix sph all fsi 0.01 wendland 1.5\ntimestep 2e-4\nneighbor 0.003 bin\n"
+    make = box("0 0.1 0 0.1", 0.01, boundary="s s p", water="") + "velocity all set 0.5 0.3 0 units box\nvelocity all ramp vx -1 1 x 0 0.1 sum yes units box\n"
+    whole = run(tmp_path, make + physics + watch(every=60) + "restart 30 mid.*\nrun 60\n", ranks).frames()[-1]
+    rest = run(tmp_path, start(boundary="s s p") + "read_restart mid.30\n" + physics + watch("rest.dump", 60) + "restart 30 other.*\nrun 30\n", ranks).frames("rest.dump")[-1]
+    assert whole.step == rest.step == 60 and differing(whole, rest) == []
+
+
 @pytest.mark.parametrize("mode", MODES)
 def test_write_restart_changes_rank_count(tmp_path, mode):
     """write_restart on one rank, going on with four (and pair styles given again, which must be the same)."""
