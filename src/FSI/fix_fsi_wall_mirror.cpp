@@ -114,9 +114,6 @@ void FixFSIWallMirror::add_wall(const std::string &key, double place)
   w.side = key[1] == 'l' ? 1.0 : -1.0;
   if (w.axis == 2 && domain->dimension == 2)
     error->all(FLERR, "Fix fsi/wall/mirror {} is not possible for dimension 2", key);
-  if (domain->periodicity[w.axis])
-    error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key,
-               "xyz"[w.axis]);
   w.position = place != EDGE ? place : w.side > 0.0 ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
   std::fill_n(w.lo, 3, -BIG);
   std::fill_n(w.hi, 3, BIG);
@@ -165,6 +162,10 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_given) const
 
 void FixFSIWallMirror::init()
 {
+  for (const auto &w : walls)
+    if (domain->periodicity[w.axis])
+      error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", face(w),
+                 "xyz"[w.axis]);
   auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
   disc = &fix_fsi->disc;
   step = &fix_fsi->step;

@@ -226,6 +226,7 @@ CASES = [
     ("no wall at all", WALLS, WALLS.replace("xlo 0.0 velocity 0.1 0 0", "guard 0.1 #"), r"at least one of xlo"),
     ("zlo wall in 2D", WALLS, WALLS + " zlo 0", r"zlo .*dimension 2"),
     ("wall across a period", "boundary f f p", "boundary p f p", r"xlo in periodic dimension x"),
+    ("wall across what becomes a period", RUN, "run 0\nchange_box all boundary p f p\nrun 0", r"xlo in periodic dimension x"),
     ("wall without place", WALLS, WALLS.replace("xlo 0.0 velocity 0.1 0 0", "xlo #"), r"mirror xlo command: missing"),
     ("wall place no number", WALLS, WALLS.replace("xlo 0.0", "xlo left"), r"left"),
     ("range before wall", FIRST, FIRST.replace("xlo 0.0", "range x 0 1 xlo 0.0"), r"range must follow"),
