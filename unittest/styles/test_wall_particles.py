@@ -10,7 +10,7 @@ from scenes import WATER, Kernel, close, difference, differing, lammps, lattice,
 from fsi import dump, paths
 
 DX, C, G = 0.01, 20.0, 9.81
-MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
+MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500", wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
 
 
 def data(x, kind, v=None, box=((-0.2,) * 3, (0.6,) * 3), rho=0.0):
@@ -204,6 +204,22 @@ def test_pressure_linear(tmp_path):
     assert of_means.max() > 1.0
     page = " ".join((paths.ROOT / "doc/src/fix_fsi_wall_particle.rst").read_text().split())
     assert f"the mean error over the gradient times dx is {found.mean():.2f}, with *mean* {of_means.mean():.2f}" in page
+
+
+def test_pressure_linear_on_a_wall_that_accelerates(tmp_path):
+    """What is on it is fluid: the density of the wall's material, and of a fluid that is nowhere, say nothing."""
+    x = lattice((8, 9), DX)
+    kind = np.where(x[:, 1] < 4 * DX, 2, 1)
+    x[:, :2] += np.random.default_rng(3).uniform(-0.15, 0.15, (len(x), 2)) * DX
+    found = []
+    for names in ("light wall light", "light buoy light", "light wall water"):
+        (folder := tmp_path / names.replace(" ", "-")).mkdir()
+        text = deck("tension yes", names, "pressure linear", f"fix m wall fsi/move wiggle 0.002 0.001 0 0.01 units box\n{shot()}run 5")
+        rows = particles(x, kind, rho=0.0, box=np.transpose(BOX2), types=3)
+        found.append(dump.read(go(folder, text, rows).folder / "atoms.dump")[-1]["p"][kind == 2])
+    assert np.ptp(found[0]) > 100
+    for other in found[1:]:
+        close(other, found[0], 1e-10)    # pressures of densities, in another order of sums
 
 
 TURNS = """units si
