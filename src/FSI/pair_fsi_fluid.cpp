@@ -1006,11 +1006,12 @@ void PairFSIFluid::add_implicit_viscosity(const std::vector<FluidParticles> &of_
     for (int d = 0; d < D; d++) point[i].v[d] = w[D * i + d];
   laws.alpha = laws.beta = 0.0;
   add_viscous_forces<D>(particles, laws, false, sums);
+  const int nall = atom->nlocal + atom->nghost, counted = force->newton_pair ? nall : atom->nlocal;
   double late = 0.0;    // the work is that of the mean velocity of the step
-  for (size_t i = 0; i < w.size() / D; i++)
+  for (int i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) {
       forces[ROW * i + d] += viscous_forces[ROW * i + d];
-      if (particles.state[particles.type[i]].species == FLUID)
+      if (i < counted && particles.state[particles.type[i]].species == FLUID)
         late += 0.5 * viscous_forces[ROW * i + d] * (w[D * i + d] - atom->v[i][d]);
     }
   ledger->tally(Ledger::LAMINAR, late);

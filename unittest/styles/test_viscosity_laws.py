@@ -195,6 +195,18 @@ def test_implicit_is_explicit(tmp_path):
     assert found[1] == pytest.approx(found[0], rel=1e-3)
 
 
+def test_implicit_powers_without_newton(tmp_path):
+    """What viscosity takes: a pair across a period counts once, in sums of another order."""
+    taken = []
+    for newton in ("on", "off"):
+        (folder := tmp_path / newton).mkdir()
+        save = 'compute e all fsi/energy\nfix save all ave/time 1 1 1 c_e[6] file taken.txt format " %.15g"'
+        drive = f"fix 3 all gravity 1 vector 1 0 0\n{save}"
+        run(folder, f"newton {newton}\n" + CHANNEL.format(law="viscosity 1", rows=6, time=0.1, form=IMPLICIT, drive=drive, sound=3, height=1.0))
+        taken.append(np.loadtxt(folder / "taken.txt")[-1, 1])
+    assert taken[0] > 1e-3 and taken[1] == pytest.approx(taken[0], rel=1e-10)
+
+
 def stopping(tau, m, parts, rows=200, mu=1.0):
     """When the flow of a channel of half width 1, after its pressure gradient of 1 is turned off, is these parts of the exact Bingham one: finite
     differences, implicit in time, in the half of it."""
