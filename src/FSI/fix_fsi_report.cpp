@@ -343,8 +343,7 @@ std::string FixFSIReport::momentum_table(bool lost)
   std::string others = lost ? " lost particles," : "";
   if (has_open_ends(lmp)) others += " flow through open ends,";
   for (auto &fix : modify->get_fix_list())
-    if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") &&
-        !utils::strmatch(fix->style, "^gravity"))
+    if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^gravity"))
       others += fmt::format(" fix {},", fix->id);
   std::string text = fmt::format("  {:<46} {:>12} {:>12}{}\n", "momentum", "x", "y",
                                  disc->dim == 3 ? fmt::format(" {:>12}", "z") : "");

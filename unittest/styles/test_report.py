@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from decks import go_on, open_box, output_of, total_lagrangian
+from redefined import MATERIALS, deck
 from scenes import DX, dam_gate, differing, fluid_box, run, watch
 
 from fsi import log
@@ -193,6 +194,11 @@ def test_momentum(tmp_path, case, ranks):
     np.testing.assert_allclose(vector(report, "rest"), expected, atol=1e-12 * scale)
     assert np.abs(vector(report, "held")).max() > 1e-3 * scale  # there was something to sum
     assert ("unaccounted for: fix push, error" in done.output) == (case == "pushed")
+
+
+def test_stream_is_no_error(tmp_path):
+    done = run(tmp_path, deck("stream") + "fix report all fsi/report\nrun 20\n", m_fsi=MATERIALS)
+    assert "unaccounted for: fix stream, error" in done.output
 
 
 def test_ledger(tmp_path):
