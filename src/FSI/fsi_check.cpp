@@ -21,6 +21,7 @@
 #include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
+#include "fsi_lammps_access.h"
 #include "fsi_pack.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
@@ -89,6 +90,7 @@ void Check::before_init()
       if (fix->box_change & ~(Fix::BOX_CHANGE_ANY | Fix::BOX_CHANGE_DOMAIN))
         refuse(error, Refused::DEFORM, fix->id, fix->style);
   if (neighbor->includegroup) refuse(error, Refused::INCLUDE);
+  if (has_reduced_ghosts(comm)) refuse(error, Refused::REDUCED_GHOSTS);
   if (utils::strmatch(force->pair_style, "^hybrid/scaled")) refuse(error, Refused::SCALED);
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < disc.largest_cut)

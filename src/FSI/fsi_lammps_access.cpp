@@ -40,7 +40,7 @@ struct OfModify : public Modify {
 struct OfComm : public CommBrick {
   using CommBrick::nswap, CommBrick::sendlist, CommBrick::sendnum, CommBrick::sendproc,
       CommBrick::recvproc, CommBrick::firstrecv, CommBrick::recvnum, CommBrick::pbc_flag,
-      CommBrick::pbc;
+      CommBrick::pbc, CommBrick::multi_reduce;
 };
 
 struct OfGravity : public FixGravity {
@@ -73,6 +73,11 @@ bool FSI::find_exchanges(const Comm *comm, std::vector<Exchange> &found)
                      (brick->*&OfComm::firstrecv)[k], (brick->*&OfComm::recvnum)[k],
                      (brick->*&OfComm::pbc_flag)[k], (brick->*&OfComm::pbc)[k]});
   return brick != nullptr;
+}
+
+bool FSI::has_reduced_ghosts(const Comm *comm)
+{
+  return comm->*&OfComm::multi_reduce;
 }
 
 bool FSI::is_disabled(const FixGravity *fix)

@@ -16,6 +16,7 @@
 //
 //   Modify      which parts of a restart file no fix has taken (fsi_record: IDs that have changed)
 //   CommBrick   its exchanges with ghosts (fsi_fields: without those that carry nothing)
+//   Comm        whether ghosts are fewer than all neighbors (fsi_check)
 //   FixGravity  whether it is disabled, whether it has variables (fsi_hub)
 //   Fix         its number (fsi_changes: another one may be at the address of one that is gone)
 //   FixRigid, FixRigidSmall
@@ -51,6 +52,7 @@ namespace FSI {
   // false: comm_style tiled, which has others
   bool find_exchanges(const Comm *, std::vector<Exchange> &);
 
+  bool has_reduced_ghosts(const Comm *);    // comm_modify reduce/multi
   bool is_disabled(const FixGravity *), has_variable(const FixGravity *);
   int number_of(const Fix *);
 

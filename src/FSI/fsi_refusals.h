@@ -42,6 +42,8 @@ namespace FSI {
                   "instead"},
         INCLUDE = {NOT_WITH, "Fix fsi", "neigh_modify include",
                    "particles without neighbors have no pressure"},
+        REDUCED_GHOSTS = {NOT_WITH, "Fix fsi", "comm_modify reduce/multi",
+                          "particles of several spacings need all neighbors as ghosts"},
         SCALED = {NOT_WITH, "Fix fsi", "pair_style hybrid/scaled",
                   "densities and sub-steps would not be scaled"},
         TRICLINIC = {NOT_WITH, "Fix fsi", "a triclinic box",
