@@ -41,6 +41,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -341,11 +342,21 @@ void FixFSI::final_integrate()
   turn();
 }
 
-// A restart file has a shrink-wrapped box around particles where the step has left them, or it
-// could not be read
+// The second drift may take particles out of a box that was around them when lists were made. A
+// restart file that is written now could not be read: a shrink-wrapped box goes along, and what
+// leaves a fixed one does so with the next drift
 void FixFSI::end_of_step()
 {
-  if (domain->nonperiodic == 2 && update->ntimestep == output->next_restart) domain->reset_box();
+  if (update->ntimestep != output->next_restart || domain->nonperiodic == 0) return;
+  domain->reset_box();
+  if (step.device) step.device->to_host();
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) {
+      const double lo = domain->boxlo[d], hi = domain->boxhi[d];
+      double &x = atom->x[i][d];
+      if (!domain->periodicity[d]) x = std::clamp(x, lo, std::nextafter(hi, lo));
+    }
+  if (step.device) step.device->from_host();
 }
 
 // bring density and stress of local and ghost atoms to the time of the positions; not to advance,
