@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
@@ -170,6 +171,24 @@ void FixFSIWallMirror::init()
   disc = &fix_fsi->disc;
   step = &fix_fsi->step;
   ledger = &fix_fsi->ledger;
+  for (const auto *other : fixes_of<FixFSIWallMirror>(lmp))
+    for (const auto &w : walls) check_same(w, *other);
+}
+
+// images of a plane that is there twice would count twice
+void FixFSIWallMirror::check_same(const Wall &w, const FixFSIWallMirror &of) const
+{
+  for (const auto &o : of.walls) {
+    bool same = &o != &w && o.axis == w.axis && o.side == w.side &&
+        std::fabs(o.position - w.position) < 1.0e-6 * disc->dx;
+    for (int d = 0; d < domain->dimension; d++)
+      same = same && o.lo[d] < w.hi[d] && w.lo[d] < o.hi[d];
+    if (same)
+      error->all(FLERR,
+                 "Fix fsi/wall/mirror {}: wall {} at {:.10g} is twice there, also in fix {}: its "
+                 "images would count twice, since they act on all fluids",
+                 id, face(w), w.position, of.id);
+  }
 }
 
 // a fluid particle that starts behind a wall is a mistake in the script

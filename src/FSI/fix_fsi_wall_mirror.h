@@ -66,6 +66,7 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
   void add_wall(const std::string &key, double place);
   void add_range(FSI::Wall &, int along, double low, double high) const;
   void check_symmetry() const;
+  void check_same(const FSI::Wall &, const FixFSIWallMirror &of) const;
   void warn_of_slip(const std::vector<bool> &slip_given) const;
   double guard = 0.1;    // smallest distance to a wall, in spacings
   bigint reflected = 0;

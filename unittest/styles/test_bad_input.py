@@ -228,6 +228,7 @@ CASES = [
     ("zlo wall in 2D", WALLS, WALLS + " zlo 0", r"zlo .*dimension 2"),
     ("wall across a period", "boundary f f p", "boundary p f p", r"xlo in periodic dimension x"),
     ("wall across what becomes a period", RUN, "run 0\nchange_box all boundary p f p\nrun 0", r"xlo in periodic dimension x"),
+    ("wall that is there twice", WALLS, "fix more all fsi/wall/mirror xlo 0 range y 0.1 INF\n" + WALLS, r"wall xlo at 0 is twice there, also in fix walls"),
     ("wall without place", WALLS, WALLS.replace("xlo 0.0 velocity 0.1 0 0", "xlo #"), r"mirror xlo command: missing"),
     ("wall place no number", WALLS, WALLS.replace("xlo 0.0", "xlo left"), r"left"),
     ("range before wall", FIRST, FIRST.replace("xlo 0.0", "range x 0 1 xlo 0.0"), r"range must follow"),
