@@ -92,6 +92,11 @@ void Check::before_init()
   if (neighbor->includegroup) refuse(error, Refused::INCLUDE);
   if (has_reduced_ghosts(comm)) refuse(error, Refused::REDUCED_GHOSTS);
   if (utils::strmatch(force->pair_style, "^hybrid/scaled")) refuse(error, Refused::SCALED);
+  if (force->ftm2v != 1.0)
+    error->all(FLERR,
+               "Fix fsi does not support units {}, in which force is not mass times acceleration: "
+               "expected lj, si, cgs, micro or nano",
+               update->unit_style);
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < disc.largest_cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}",

@@ -86,3 +86,9 @@ def test_material_file_of_other_units_is_refused(tmp_path):
     with pytest.raises(AssertionError, match="(?i)units"):
         run(tmp_path, "units lj\natom_style fsi\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\npair_style fsi/fluid sound 10\n"
                       "pair_coeff * * materials.fsi water\n")
+
+
+@pytest.mark.parametrize("units", ("real", "metal", "electron"))
+def test_units_of_molecules_are_refused(tmp_path, units):
+    with pytest.raises(AssertionError, match=f"does not support units {units}, .*expected lj, si, cgs, micro or nano"):
+        measured(tmp_path, units)
