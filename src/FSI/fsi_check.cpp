@@ -90,6 +90,7 @@ void Check::before_init()
       if (fix->box_change & ~(Fix::BOX_CHANGE_ANY | Fix::BOX_CHANGE_DOMAIN))
         refuse(error, Refused::DEFORM, fix->id, fix->style);
   if (neighbor->includegroup) refuse(error, Refused::INCLUDE);
+  if (fluid && neighbor->build_once) refuse(error, Refused::ONCE);
   if (has_reduced_ghosts(comm)) refuse(error, Refused::REDUCED_GHOSTS);
   if (utils::strmatch(force->pair_style, "^hybrid/scaled")) refuse(error, Refused::SCALED);
   if (force->ftm2v != 1.0)

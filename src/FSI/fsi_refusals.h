@@ -42,6 +42,8 @@ namespace FSI {
                   "instead"},
         INCLUDE = {NOT_WITH, "Fix fsi", "neigh_modify include",
                    "particles without neighbors have no pressure"},
+        ONCE = {NOT_WITH, "A fluid", "neigh_modify once",
+                "its particles would keep the neighbors that they had at the start of a run"},
         REDUCED_GHOSTS = {NOT_WITH, "Fix fsi", "comm_modify reduce/multi",
                           "particles of several spacings need all neighbors as ghosts"},
         SCALED = {NOT_WITH, "Fix fsi", "pair_style hybrid/scaled",

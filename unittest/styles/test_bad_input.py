@@ -153,6 +153,7 @@ CASES = [
     ("fluid in a box that is deformed", RUN, "fix d all deform 1 x scale 1.1\nrun 1", r"A fluid does not go with fix d \(style deform\): the box would move particles"),
     ("fluid in a box under a barostat", RUN, "change_box all boundary p p p\nfix d all press/berendsen iso 0 0 1\nrun 1", r"A fluid does not go with fix d \(style press/berendsen\): the box would move"),
     ("lists of a group", RUN, "group first type 1\natom_modify first first\nneigh_modify include first\nrun 1", r"Fix fsi does not go with neigh_modify include"),
+    ("lists once", RUN, "neigh_modify once yes\nrun 1", r"A fluid does not go with neigh_modify once"),
     ("ghosts of bodies and levels", RUN, "neighbor 0.003 multi\ncomm_modify mode multi reduce/multi\nrun 1", r"Fix fsi does not go with comm_modify reduce/multi"),
     ("scaled forces", re.compile("pair_style hybrid fsi/fluid(.*) fsi/solid"), r"pair_style hybrid/scaled 1 fsi/fluid\1 0.5 fsi/solid", r"Fix fsi does not go with pair_style hybrid/scaled"),
     ("communication cutoff small", RUN, "comm_modify cutoff 0.02\nrun 0",
