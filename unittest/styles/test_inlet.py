@@ -415,6 +415,14 @@ def test_fluid_that_has_no_room_is_told(tmp_path, density, said):
     assert (out.count(f"{said} than the fluid's density has room for") == 2) if said else "room for" not in out
 
 
+@pytest.mark.parametrize("part, said", [("", 2), ("range x 0 $L", 0)])
+def test_wall_that_moves_beside_a_buffer_is_told(tmp_path, part, said):
+    """Of both ends, whose particles have no velocity across the channel"""
+    ends = SWINGING.replace("yhi $H slip no", f"yhi $H slip no velocity 0 0.01 0 {part}")
+    out = run(tmp_path, channel(ends, dx=0.002, L=0.06, H=0.02, c=5, back=500, shift=0.1) + "run 0\n", oil_fsi=materials(fluid=WATER + " viscosity 1")).output
+    assert len(set(re.findall(r"WARNING: (Fix fsi/\w+ \w): the mirror wall yhi moves beside its buffer", out))) == said
+
+
 @pytest.mark.parametrize("U", [0.1, -0.1])
 def test_what_is_too_dense_is_not_pressed_in(U):
     """A stream between two pressures with 3 % too much mass: within two buffer lengths, 10 dx, before the end where it leaves, densities
