@@ -142,7 +142,7 @@ void PairFSISolidTL::init_style()
   reference->end_corrected = !plain;
   reference->self.range = self_contact ? contact_range : 0.0;
   reference->self.tears = damage > 0.0;
-  comm_forward = has_artificial() || laws.facts().by_rate ? 2 * dim : dim;
+  comm_forward = 2 * dim;
   comm_reverse = dim;
 
   contacts.clear();
@@ -790,18 +790,19 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   return s;
 }
 
-// ghosts: positions (and velocities) out, forces back; of solids only
+// Ghosts: positions (and velocities) out, forces back; of solids only. Fix adapt may give viscosity
+// to a style that began without.
 void PairFSISolidTL::forward_positions()
 {
+  sends_velocities = has_artificial() || laws.facts().by_rate;
   exchange(step->profile, comm, [this]() {
-    reference->swaps.forward<Pair>(this);
+    reference->swaps.forward<Pair>(this, sends_velocities ? comm_forward : disc->dim);
   });
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
 {
   const int dim = disc->dim;
-  const bool velocities = comm_forward > dim;
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
                            pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
@@ -809,7 +810,7 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
   for_solids(n, listed, 0, [&](int i) {
     if (sends_strains) return void(*buf++ = smoothed.strain[i]);
     for (int d = 0; d < dim; d++) *buf++ = atom->x[i][d] + shift[d];
-    if (velocities) buf = std::copy_n(atom->v[i], dim, buf);
+    if (sends_velocities) buf = std::copy_n(atom->v[i], dim, buf);
   });
   return buf - begin;
 }
@@ -817,11 +818,10 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
   const int dim = disc->dim;
-  const bool velocities = comm_forward > dim;
   for_solids(n, nullptr, first, [&](int i) {
     if (sends_strains) return void(smoothed.strain[i] = *buf++);
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
-    for (int d = 0; velocities && d < dim; d++) atom->v[i][d] = *buf++;
+    for (int d = 0; sends_velocities && d < dim; d++) atom->v[i][d] = *buf++;
   });
 }
 

@@ -138,7 +138,8 @@ class PairFSISolidTL : public PairFSI {
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <int D> void gather_points();
   FSI::VolumetricStrain &smoothed;
-  bool sends_strains = false;    // what messages carry: these, or positions and forces
+  // what messages carry: strains, or positions and forces; with positions velocities, too
+  bool sends_strains = false, sends_velocities = false;
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
   // what call(laws per type, constant with the dimension) returns

@@ -664,6 +664,16 @@ def test_bodies_migrate_through_ranks_and_boundaries(tmp_path, one_rank, dim, ra
     same_state(end, got[-1], 1e-10, box)
 
 
+def test_viscosity_that_begins_in_a_run(tmp_path):
+    """Fix adapt turns it on: ghosts have the velocities of sub-steps from then on."""
+    adapt = "variable a equal 0.5*(step>5)\nfix a all adapt 1 pair fsi/solid/tl alpha * * v_a\n"
+    ends = []
+    for ranks in (1, 2):
+        text = "".join(bodies(2, substeps=5, keywords="")) + adapt + watch(every=40) + "run 40\n"
+        ends.append(run(tmp_path / str(ranks), text, ranks, **files(2)).frames()[-1])
+    same_state(*ends, 1e-10, np.array([1.2, 1.0, 0.1]))
+
+
 def test_energy_of_contact_on_ranks(tmp_path):
     """Two unstrained blocks overlap at the border of two ranks: each pair counts once, with newton off too."""
     x = lattice([4, 5], DX, origin=[0.2, 0.3])
