@@ -74,8 +74,6 @@ void ComputeFSIEnergy::compute_vector()
   const Ledger &ledger = fix_fsi->ledger;
   double sum[NHAVE + Ledger::NTERM] = {};    // of this rank
   double **const v = atom->v, **const f = atom->f;
-  // in the setup of a run positions and velocities are of one time
-  const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
   const auto *const stress = FixFSIStress::find(lmp);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = disc.state[atom->type[i]];
@@ -85,8 +83,8 @@ void ComputeFSIEnergy::compute_vector()
     const bool tl = s.form == TOTAL_LAGRANGIAN;
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
     const double dth = !(atom->mask[i] & disc.mover->groupbit) ? 0.0
-        : tl                                                   ? half / step.substeps
-                                                               : half;
+        : tl                                                   ? step.behind / step.substeps
+                                                               : step.behind;
     const auto g = step.body_forces.on(i);
     for (int d = 0; d < disc.dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;

@@ -409,8 +409,7 @@ void ComputeFSIProbe::sum_up()
   all.resize(sums.size());
 
   // walls are known at the middle of the step, where forces are; positions are those of its end
-  const Walls walls =
-      step->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
+  const Walls walls = step->walls.moved(step->behind);
   std::vector<double> at(points);
   const std::vector<int> mask = walls_near(walls, at);
   for (size_t level = 0; level < disc->levels.size(); level++)

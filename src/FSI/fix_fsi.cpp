@@ -366,6 +366,7 @@ void FixFSI::update_state(bool advance)
   fields.grow();
   changes.in_step();
   step.inverted = -1;
+  step.behind = advance ? 0.5 * update->dt : 0.0;
   ledger.set_tally(advance ? update->dt : 0.0);
   step.body_forces.evaluate(disc.state);
   if (ledger.kept && advance)

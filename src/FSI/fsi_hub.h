@@ -211,7 +211,9 @@ namespace FSI {
     void begin(double dt);
     void write(Record &) const;
     void read(const Record &);
-    bool shifts = false;                   // is it one of the steps that have shifting?
+    double behind = 0.0;    // how far forces, walls and densities are behind positions between
+                            // steps: half of the last one, 0 after setup
+    bool shifts = false;    // is it one of the steps that have shifting?
     double psi_reference = 0.0;            // of the free-surface rule
     Walls walls;                           // at the time of the positions in atom->x
     std::vector<WallForce> wall_forces;    // on each of them, counted by its fix

@@ -98,3 +98,14 @@ def test_fall_through_a_periodic_face(gravity):
         most = 9.81 * (1.8 if gravity == "v_g" else 1.0)
         assert s.lmp.extract_global("ntimestep") == 800 and kinetic > 50.0    # 3.1 m in 0.8 s under 9.81 m/s^2, of 3 kg
         assert max(energies) - min(energies) < 1.01 * s.get("rmass")[0] * (1e-3 * most)**2 / 8
+
+
+def test_energies_are_of_the_time_of_the_last_forces():
+    """A particle in free fall: of the middle of the last step, after run 0 of its end."""
+    g, dt = 9.81, 1e-3
+    with Scene([[0.0, 0.0, 0.0]], dx=0.1, dt=dt, commands=[
+            f"fix g all gravity {g} vector 0 -1 0", "compute e all fsi/energy"]) as s:
+        for steps, half in ((10, 0.5 * dt), (0, 0.0)):
+            v = s.run(steps).get("v")[0, 1]
+            kinetic = 0.5 * s.get("rmass")[0] * (v + g * half)**2
+            assert ledger(s.lmp)[0] == pytest.approx(kinetic, rel=1e-12)
