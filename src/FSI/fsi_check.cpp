@@ -85,7 +85,7 @@ void Check::before_init()
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
   const bool fluid = facts_of_fluids(lmp).style;
-  if (fluid)
+  if (fluid || facts_of_solids(lmp).by_rate)
     for (const auto *fix : modify->get_fix_list())
       if (fix->box_change & ~(Fix::BOX_CHANGE_ANY | Fix::BOX_CHANGE_DOMAIN))
         refuse(error, Refused::DEFORM, fix->id, fix->style);

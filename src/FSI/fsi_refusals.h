@@ -37,9 +37,9 @@ namespace FSI {
 
     // fix fsi
     inline constexpr Refusal
-        DEFORM = {NOT_WITH, "A fluid", "fix {} (style {})",
-                  "the box would move particles, and their densities would not follow: move walls "
-                  "instead"},
+        DEFORM = {NOT_WITH, "A fluid or hypoelastic solid", "fix {} (style {})",
+                  "the box would move particles, and densities and stresses would not follow: move "
+                  "walls instead"},
         INCLUDE = {NOT_WITH, "Fix fsi", "neigh_modify include",
                    "particles without neighbors have no pressure"},
         ONCE = {NOT_WITH, "A fluid", "neigh_modify once",

@@ -793,6 +793,23 @@ PERIODS = [(3, "", 1, -0.9), (5, "", 1, -0.36), (3, "hourglass 0", 1, 1.2), (5, 
            (5, "hourglass 0 gradient linear", 1, 17.0), (5, "hourglass 0", 0, 4.4)]
 
 
+@pytest.mark.parametrize("style, law, substeps", [
+    ("fsi/solid/tl", "svk", 1), ("fsi/solid/tl", "svk", 4), ("fsi/solid/tl", "hypo", 1), ("fsi/solid", "", 1)])
+def test_box_that_is_deformed(style, law, substeps):
+    """Fix deform takes a periodic body with it: the strain of its law. Rates of stress know velocities only."""
+    scene = Scene(lattice([10, 10], DX), dx=DX, materials=(MATERIAL,), solid_style=style, solid=f"law {law}" * bool(law), boundary="p p p",
+                  box=((0, 0), (1, 1)), dt=2e-4, density=f"substeps {substeps}", commands=(
+                      ["fix stress all fsi/stress"] * (law == "hypo") + ["fix d all deform 1 x scale 1.05 remap x"]))
+    with scene as s:
+        if law != "svk":
+            with pytest.raises(Exception, match=r"A fluid or hypoelastic solid does not go with fix d \(style deform\)"):
+                s.run(1)
+            return
+        # forces are zero by symmetry
+        s.run(100)
+        close(s.sigma[:, 0, 0], np.full(100, 1.05 * (LAMBDA + 2 * G) * (1.05**2 - 1) / 2), 1e-10)
+
+
 @pytest.mark.parametrize("n, keywords, columns, too_long", PERIODS)
 def test_vibrating_plate(n, keywords, columns, too_long):
     """Against finite elements, in half a period; and what each of the three measures is worth."""
