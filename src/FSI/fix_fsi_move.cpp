@@ -151,23 +151,29 @@ void FixFSIMove::init()
                "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, "
                "too: leave them out",
                id);
-  refuse_free_walls(fix_fsi->disc);
+  refuse_free(fix_fsi->disc, fix_fsi->step.takes_substeps(lmp));
   given->find();
 }
 
-// Nothing holds the particles of a wall together: forces would take each its own way
-void FixFSIMove::refuse_free_walls(const Discretization &disc) const
+// Nothing holds the particles of a wall together: forces would take each its own way. Those in a
+// solid that takes sub-steps are seen once in a step: a part that they move would gain energy
+void FixFSIMove::refuse_free(const Discretization &disc, bool substeps) const
 {
   for (int k = 0; k < domain->dimension; k++) {
     if (sets_velocity(k)) continue;
     const char name = "xyz"[k];
-    for (int i = 0; i < atom->nlocal; i++)
-      if ((atom->mask[i] & groupbit) && disc.state[atom->type[i]].species == RIGID)
-        error->one(
-            FLERR,
-            "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would take each "
-            "wall particle its own way. Write 0 instead of NULL to hold that component{}",
-            id, name, atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
+    for (int i = 0; i < atom->nlocal; i++) {
+      const State &s = disc.state[atom->type[i]];
+      const bool wall = s.species == RIGID, solid = substeps && s.form == TOTAL_LAGRANGIAN;
+      if (!(atom->mask[i] & groupbit) || !(wall || solid)) continue;
+      error->one(FLERR,
+                 "Fix fsi/move {} leaves {} of atom {} free, which is of a {}. Write 0 instead of "
+                 "NULL to hold that component{}",
+                 id, name, atom->tag[i],
+                 wall ? "wall: forces would take each wall particle its own way"
+                      : "solid with sub-steps: what moves it would gain energy",
+                 motion == VARIABLE ? ", a variable that is 0" : "");
+    }
   }
 }
 

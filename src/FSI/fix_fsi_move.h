@@ -82,7 +82,7 @@ class FixFSIMove : public FSI::FixFields, public FSI::Part {
   double now() const;
   std::string text() const;    // as in the command
   bool sets_velocity(int k) const, of_atom(int k) const;
-  void refuse_free_walls(const FSI::Discretization &) const;
+  void refuse_free(const FSI::Discretization &, bool substeps) const;
   void compare_velocities(const double *before) const;
   void compare_velocity(int k, double moved, double dt, double v, double v_end, double round,
                         int i = -1) const;

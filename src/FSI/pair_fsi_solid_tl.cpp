@@ -198,13 +198,15 @@ void PairFSISolidTL::refuse_constraints() const
     }
 }
 
-// A rigid part of an elastic body that another style than fix rigid or rigid/small moves is kicked
-// once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
-void PairFSISolidTL::refuse_rigid_parts() const
+// A part of an elastic body that another style than fix rigid or rigid/small moves by forces is
+// kicked once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains
+// energy. (Fix fsi/move looks for itself; of fix move nobody can see what it leaves free.)
+void PairFSISolidTL::refuse_other_parts() const
 {
   for (auto &fix : modify->get_fix_list()) {
-    if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
-    if (clamps->known(fix)) continue;
+    if (!fix->time_integrate || clamps->known(fix) || utils::strmatch(fix->style, "^fsi") ||
+        utils::strmatch(fix->style, "^move$") || utils::strmatch(fix->style, "noforce$"))
+      continue;
     for (const BondRow &row : rows) {
       const auto elastic = [&](int i) {
         return atom->mask[i] & disc->mover->groupbit;
@@ -298,7 +300,7 @@ void PairFSISolidTL::find_rows()
                     reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),
                     zeta * material[type[i]].young, disc->h_of(type[i])});
   }
-  if (step->substeps > 1 || (update->setupflag && step->takes_substeps(lmp))) refuse_rigid_parts();
+  if (step->substeps > 1 || (update->setupflag && step->takes_substeps(lmp))) refuse_other_parts();
   // forces among what does not are in balance, but for those across planes of symmetry
   const auto moves = [&](const BondRow &row) {
     return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [&](int j) {

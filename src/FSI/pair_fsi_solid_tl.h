@@ -124,7 +124,7 @@ class PairFSISolidTL : public PairFSI {
 
   void refuse_constraints() const;
   void add_forces();    // to those of all
-  void refuse_rigid_parts() const;
+  void refuse_other_parts() const;
   static constexpr double CRUSHED = 0.1;    // of its volume
   double stored(int i) const;
   template <int D> double spare(int i) const;

@@ -542,13 +542,28 @@ def test_small_bodies_are_known_by_atom_ids(compress):
         assert np.isfinite(s.get("x")).all()
 
 
-@pytest.mark.parametrize("style", ["rigid/nve single", "rigid/nve/small molecule"])
+@pytest.mark.parametrize("style", ["rigid/nve single", "rigid/nve/small molecule", "nve"])
 @pytest.mark.parametrize("auto", [False, True])
 def test_other_styles_are_refused(style, auto):
     """They keep their bodies in another way; a run of no steps, as that of `fsi check`, says so where fix fsi/dt may choose sub-steps."""
     s, _ = beam([12, 4], 4, 1 if auto else 4, 1e-5, commands=["unfix tip", f"fix tip held {style}", "fix d all fsi/dt 1 substeps auto" if auto else ""])
-    with s, pytest.raises(Exception, match=r"Fix tip \(style rigid.*\) moves a part of the elastic body of atom \d+"):
+    with s, pytest.raises(Exception, match=r"Fix tip \(style .*nve.*\) moves a part of the elastic body of atom \d+"):
         s.run()
+
+
+@pytest.mark.parametrize("motion", ["linear NULL 0 0", "variable NULL v_y NULL NULL v_y NULL"])
+def test_what_forces_move_takes_no_sub_steps(motion):
+    """Fix fsi/move leaves x free: without sub-steps momentum along x stays, with them it would not."""
+    for substeps in (1, 4):
+        s, tip = beam([12, 4], 4, substeps, 1e-5, commands=["unfix tip", "velocity held set NULL 0 NULL", "variable y equal 0", f"fix tip held fsi/move {motion}"])
+        with s:
+            if substeps > 1:
+                with pytest.raises(Exception, match=r"leaves x of atom \d+ free, which is of a solid with sub-steps"):
+                    s.run()
+                continue
+            before = momenta(s.run())
+            now = momenta(s.run(20))
+            assert abs(now[0][0] - before[0][0]) < 1e-12 * before[2]
 
 
 def test_known_motion_needs_no_fix_rigid():
