@@ -185,12 +185,14 @@ void PairFSISolidTL::refuse_constraints() const
                                        "planeforce",      "freeze",   "manifoldforce",
                                        "damping/cundall", "shake",    "rattle"};
   if (!step->takes_substeps(lmp)) return;
+  int moved = disc->mover->groupbit;    // in sub-steps
+  for (const auto &fix : modify->get_fix_by_style("^rigid")) moved |= fix->groupbit;
   for (auto &fix : modify->get_fix_list())
     for (const char *style : styles) {
       const std::string name = style;
       if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
       const auto held = find_particles(atom, world, [&](int i) {
-        return material[atom->type[i]].species == SOLID && atom->mask[i] & disc->mover->groupbit &&
+        return material[atom->type[i]].species == SOLID && atom->mask[i] & moved &&
             atom->mask[i] & fix->groupbit;
       });
       if (held.count)

@@ -551,6 +551,19 @@ def test_other_styles_are_refused(style, auto):
         s.run()
 
 
+@pytest.mark.parametrize("line", ["setforce 0 NULL NULL", "lineforce 0 1 0"])
+def test_constraints_on_the_rigid_part_are_refused(line):
+    """They do not see what the sub-steps do to it: fix rigid has keyword force."""
+    for substeps in (1, 4):
+        s, _ = beam([12, 4], 4, substeps, 1e-5, commands=[f"fix hold held {line}"])
+        with s:
+            if substeps == 1:
+                s.run(1)
+                continue
+            with pytest.raises(Exception, match=r"A solid with sub-steps does not go with fix hold \(style .*force\) on atom \d+"):
+                s.run()
+
+
 @pytest.mark.parametrize("motion", ["linear NULL 0 0", "variable NULL v_y NULL NULL v_y NULL"])
 def test_what_forces_move_takes_no_sub_steps(motion):
     """Fix fsi/move leaves x free: without sub-steps momentum along x stays, with them it would not."""
