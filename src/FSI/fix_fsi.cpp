@@ -418,6 +418,7 @@ void FixFSI::write_restart(FILE *fp)
   MPI_Allreduce(ledger.energy_out, all, Ledger::NTERM, MPI_DOUBLE, MPI_SUM, world);
   Record record = this->record(all);
   clock.write(record);
+  record.add("atoms", std::to_string(count_of(atom->nlocal, world)));
   record.write(fp);
 }
 
@@ -444,6 +445,8 @@ void FixFSI::goes_on(const Record &record, const std::string &when)
 void FixFSI::restart(char *buf)
 {
   const Record record(lmp, "fix fsi", buf);
+  if (record.has("atoms")) changes.in_file = std::stoll(record.value("atoms"));
+  changes.check_file();
   goes_on(record, Keywords::OF_RESTART);
   if (comm->me) std::fill_n(ledger.energy_out, Ledger::NTERM, 0.0);    // they are sums of all
   clock.read(record);

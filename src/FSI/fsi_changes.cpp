@@ -75,6 +75,16 @@ void Changes::made(int i)
   if (pours && update->whichflag == 1) births.insert(atom->tag[i]);
 }
 
+void Changes::check_file() const
+{
+  if (modify->nfix_restart_peratom && in_file >= 0 && in_file != atom->natoms)
+    error->all(
+        FLERR,
+        "The restart file has {} atoms, now there are {}: what it keeps of each is lost with "
+        "delete_atoms. Give fix fsi and run 0 before it",
+        in_file, atom->natoms);
+}
+
 void Changes::set_up()
 {
   there = present();

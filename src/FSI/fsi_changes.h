@@ -39,6 +39,11 @@ namespace FSI {
     bool of_atoms() const;    // since then
     bool any_mass() const;    // has any on any rank been in a run? all ask together
 
+    // Atoms in the restart file that was read. What it has of each stays in their order until a fix
+    // takes it, which delete_atoms changes
+    bigint in_file = -1;
+    void check_file() const;
+
     // what a run points to; what fixes that are gone had of particles is not of now any more
     void set_up();
     bool known_setup() const { return !there.empty(); }

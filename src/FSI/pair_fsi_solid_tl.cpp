@@ -23,6 +23,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_bond_rows.h"
+#include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"
 #include "fsi_damage.h"
@@ -134,8 +135,9 @@ void PairFSISolidTL::init_style()
       }))
     refuse(error, Refused::TWO_SOLIDS);
   refuse_constraints();
-  make_laws();
   Fix *fix = modify->get_fix_by_id(FixFSIReference::ID);
+  if (!fix) fix_fsi->changes.check_file();
+  make_laws();
   if (!fix) fix = modify->add_fix(fmt::format("{} all FSI_REFERENCE", FixFSIReference::ID));
   reference = dynamic_cast<FixFSIReference *>(fix);
   reference->quadratic = !linear;

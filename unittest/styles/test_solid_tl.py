@@ -706,6 +706,21 @@ def test_restart_keeps_the_reference(tmp_path, ranks, substeps):
     same_state(a, other.frames("more.dump")[-1], 1e-11, np.array([1.2, 1.0, 0.1]))
 
 
+@pytest.mark.parametrize("where", ["before fix", "before run", "after run"])
+def test_deleting_after_read_restart(tmp_path, where):
+    """What a file has of atoms is taken in their order: bonds at the first run."""
+    box, pair, rest = bodies(2)
+    run(tmp_path, box + pair + rest + "run 40\nwrite_restart mid\n", **files(2))
+    cut = "run 0\n" * (where == "after run") + "delete_atoms group gone\n"
+    text = box.split("processors")[0] + "read_restart mid\ngroup gone id 3 7\n"
+    text += cut + rest if where == "before fix" else rest + cut
+    done = run_lammps(tmp_path, text + "run 1\n")
+    if where == "after run":
+        assert done.status == 0
+        return
+    assert "The restart file has 40 atoms, now there are 38" in done.errors[0]
+
+
 def test_data_file_loses_the_reference(tmp_path):
     """As documented: a data file holds no bonds, so a deformed body that comes out of one is at rest as it is."""
     box, pair, rest = bodies(2)
