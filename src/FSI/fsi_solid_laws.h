@@ -259,7 +259,7 @@ namespace FSI {
     {
       Factors f;
       for (int k = 0; k < nterms; k++) {
-        const double x = dt / terms[k].tau, mean = -std::expm1(-x) / x;
+        const double x = dt / terms[k].tau, mean = x > 0.0 ? -std::expm1(-x) / x : 1.0;
         f.decay[k] = std::exp(-x);
         f.now[k] = terms[k].g * (1.0 - mean);
         f.before[k] = terms[k].g * (mean - f.decay[k]);

@@ -290,3 +290,9 @@ def test_bad_style(tmp_path):
     assert "law viscoelastic has nothing to act on: no material has a Prony series" in none.output
     fluid = lammps(tmp_path, DECK + STYLE + FIXES + "run 0\n", rubber_fsi=materials(rubber="fluid rho 1000 prony 0.1 1"))
     assert "Unknown keyword prony of fluid" in fluid.errors[0]
+
+
+def test_time_stands_still(tmp_path):
+    """With a time step of 0 nothing relaxes, and nothing moves."""
+    first, last = run(tmp_path, DECK + STYLE + FIXES + START + "timestep 0\n" + watch(every=3) + "run 3\n", rubber_fsi=FILE).frames()
+    close(last.vector(), first.vector(), 1e-14)
