@@ -18,13 +18,16 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_reference.h"
 #include "fsi_cells.h"
+#include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_refine.h"
 #include "fsi_surface.h"
 #include "group.h"
 #include "input.h"
+#include "modify.h"
 #include "platform.h"
 
 #include <algorithm>
@@ -344,6 +347,21 @@ void FSIPack::pack(int steps)
                    residue[1]);
 }
 
+// packing would strain them
+void FSIPack::refuse_bonded() const
+{
+  const auto *const bonds =
+      dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
+  const auto bonded = find_particles(atom, world, [&](int i) {
+    return bonds && atom->mask[i] & body && bonds->has(i);
+  });
+  if (bonded.count)
+    error->all(FLERR,
+               "Fsi/pack: {} particles of the body, the first of them atom {}, have bonds since an "
+               "earlier run: expected a body before its first run, if only run 0",
+               bonded.count, bonded.first);
+}
+
 void FSIPack::command(int narg, char **arg)
 {
   if (domain->box_exist == 0)
@@ -373,6 +391,7 @@ void FSIPack::command(int narg, char **arg)
   step = &fix->step;
   ledger = &fix->ledger;
   lmp->init();
+  refuse_bonded();
   double finest = INFINITY;    // where levels meet only their events move what is there
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & (fluid ? fluid : body))

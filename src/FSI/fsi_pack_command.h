@@ -60,6 +60,7 @@ class FSIPack : public Command {
   std::vector<double> part(const std::vector<double> &mobility, const std::vector<double> &side);
   double keep_off(int i, double side);
   void set_masses(double volume);
+  void refuse_bonded() const;
   void remove(const std::string &group);
 };
 

@@ -331,3 +331,15 @@ def test_body_without_lattice(tmp_path):
     text = deck("region s", region=DISC).replace("region near block -0.145 0.145", "region near block -0.03 0.03")
     done = lammps(tmp_path, text)
     assert done.status != 0 and "expected one that goes on beyond the surface" in done.errors[0]
+
+
+@pytest.mark.parametrize("before, refused", [("", False), ("run 0\n", True)])
+def test_body_with_bonds(tmp_path, before, refused):
+    """An elastic body is packed before it is bonded, or it would begin with strain."""
+    text = deck("region s", region=DISC, fluid="NULL")
+    text = re.sub(r"fsi/material body wall.*\n(.*\n)+?fix 1 ", "fsi/material body solid rho 1500 young 1e6 poisson 0.3\npair_style fsi/solid/tl\n"
+                  "pair_coeff * * NULL body body\nset group body mol 1\nfix 1 ", text).replace("fix 1 water", "fix 1 body")
+    text = text.replace("fix 2 body fsi/wall/particle", "").replace("fsi/pack", before + "fsi/pack")
+    done = lammps(tmp_path, text)
+    assert (done.status != 0) == refused, done.output[-1000:]
+    assert not refused or "have bonds since an earlier run" in done.errors[0]
