@@ -166,9 +166,13 @@ void PairFSISolid::find_idle(const Census &all, const Idle &nothing) const
             "relaxes");
 }
 
+// Pairs count their own virial where F dot r would depend on the place of the box: forces of
+// hourglass control are of no pairs, those of planes from outside.
 void PairFSISolid::begin_state(bool)
 {
   if (neighbor->ago == 0) find_rows();
+  if (has_hourglass() || images.planes.any())
+    no_virial_fdotr_compute = force->pair->no_virial_fdotr_compute = 1;
 }
 
 // Pairs that share their stress, and those that only push: of different bodies and, with contact of

@@ -1,8 +1,10 @@
 """Solids: velocity gradient, stress, stiffness, artificial stress, bodies."""
 
+import re
+
 import numpy as np
 import pytest
-from decks import total_lagrangian
+from decks import deck, total_lagrangian
 from scenes import KERNELS, Scene, close, cloud, dam_gate, lattice, pairs, run, sum_over
 
 RHO, E, NU = 1000.0, 1.0e5, 0.3
@@ -322,3 +324,19 @@ run 0
     before, after = done.output.split("\ntill here none\n")
     warning = "Fix fsi/stress: a command has turned or strained a body since the last run"
     assert warning not in before and after.count("WARNING: " + warning) == 1
+
+
+@pytest.mark.parametrize("hourglass, plane", [(0.2, ""), (0, "symmetry yes")])
+def test_virial_does_not_depend_on_the_place(tmp_path, hourglass, plane):
+    """Nor on newton. (Of shear across a plane each half of a pair would have the other sign.)"""
+    virials = []
+    for newton, at in (("on", 0.0), ("off", 0.0), ("on", 0.7)):
+        text = deck(f"{at - 1} {at + 3} {at - 1} {at + 3}", 0.1, {"rubber": MATERIAL},
+                    f"variable u atom 2*(y-{at})*sin(x-{at})", f"variable w atom sin(3*(x-{at}))", "velocity all set v_u v_w 0 units box",
+                    f"fix w all fsi/wall/mirror ylo {at} {plane}" if plane else "", "compute c all pressure NULL virial",
+                    "thermo_style custom step c_c[1] c_c[2]", "thermo_modify format float %.15g", "run 60", before=[f"newton {newton}"],
+                    solid_style="fsi/solid", solid=f"artificial/visc 0.1 0 hourglass {hourglass}", dt=5e-4,
+                    body=f"{at} {at + 1.5} {at} {at + 0.5}")
+        virials.append(np.array(re.search(r"^ +60 (.*)$", run(tmp_path / f"{newton}{at}", text).output, re.M)[1].split(), float))
+    close(virials[1], virials[0], 1e-10)
+    close(virials[2], virials[0], 1e-10)
