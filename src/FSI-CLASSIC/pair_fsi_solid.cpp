@@ -125,7 +125,10 @@ int PairFSISolid::terms() const
 void *PairFSISolid::extract(const char *name, int &dim_of_extract)
 {
   dim_of_extract = 0;
-  return strcmp(name, "hourglass") == 0 ? &xi : PairFSI::extract(name, dim_of_extract);
+  if (strcmp(name, "hourglass") != 0) return PairFSI::extract(name, dim_of_extract);
+  if (!has_hourglass())    // what it keeps of particles is not there
+    error->all(FLERR, "Pair style fsi/solid hourglass is off: begin with a value > 0 to adapt it");
+  return &xi;
 }
 
 Facts PairFSISolid::facts() const

@@ -340,3 +340,9 @@ def test_virial_does_not_depend_on_the_place(tmp_path, hourglass, plane):
         virials.append(np.array(re.search(r"^ +60 (.*)$", run(tmp_path / f"{newton}{at}", text).output, re.M)[1].split(), float))
     close(virials[1], virials[0], 1e-10)
     close(virials[2], virials[0], 1e-10)
+
+
+def test_hourglass_that_is_off_cannot_be_adapted():
+    with Scene(lattice([6, 4], 0.1), dx=0.1, materials=(MATERIAL,), commands=["variable h equal 0.1", "fix a all adapt 1 pair fsi/solid hourglass * * v_h"]) as s:
+        with pytest.raises(Exception, match="hourglass is off: begin with a value > 0"):
+            s.run()
