@@ -29,6 +29,7 @@
 #include "fsi_refusals.h"
 #include "group.h"
 #include "input.h"
+#include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "update.h"
@@ -77,6 +78,14 @@ void FSIClamp::command(int narg, char **arg)
   const auto in = [&](int i, int k) {
     return mask[i] & bit[k] && disc.state[type[i]].form == TOTAL_LAGRANGIAN;
   };
+  for (const auto &fix : modify->get_fix_by_style("^rigid"))
+    if (find_particles(atom, world, [&](int i) {
+          return in(i, 1) && mask[i] & fix->groupbit;
+        }).count)
+      error->all(FLERR,
+                 "Fsi/clamp {} {}: fix {} (style {}) knows its particles already, and would not "
+                 "move those that come: expected it after fsi/clamp",
+                 names[0], names[1], fix->id, fix->style);
   const int nall = atom->nlocal + atom->nghost;
   const Cells clamps(x, nall, disc.dim, NEXT * disc.largest_cut, [&](int i) {
     return in(i, 1);

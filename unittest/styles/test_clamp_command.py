@@ -68,7 +68,8 @@ def test_a_bar_hangs_as_long_as_it_is(tmp_path):
     ("fsi/clamp moving", "Illegal fsi/clamp command: missing argument"),
     ("fsi/clamp moving nobody", "group-ID nobody does not exist"),
     ("fsi/clamp all held", "group-ID all: expected a group of a part"),
-    ("fsi/clamp other held", "expected two parts of one body")])
+    ("fsi/clamp other held", "expected two parts of one body"),
+    ("run 0\nfix r held rigid single\nfsi/clamp moving held", "fix r (style rigid) knows its particles already")])
 def test_errors(tmp_path, line, word):
     result = lammps(tmp_path, plate(2, line), materials_fsi="# DATE: 2026-01-01 UNITS: si CITATION: none\nunused fluid rho 1\n")
     assert result.status != 0 and word in " ".join(result.output.split())
