@@ -83,8 +83,6 @@ void PairFSISolid::init_style()
   check_contact();
   fix_stress = FixFSIStress::find(lmp);
   if (!fix_stress) refuse(error, Refused::STRESS);
-  comm_forward = has_hourglass() ? disc->dim * disc->dim : 0;
-  comm_reverse = has_hourglass() ? disc->dim : 0;
   bodies = several_bodies();
 }
 
@@ -184,7 +182,7 @@ void PairFSISolid::find_rows()
 {
   const tagint *const molecule = atom->molecule;
   const double far = FAR * disc->cut;
-  if (self_contact) fix_stress->enter_start(disc->state);
+  if (self_contact) fix_stress->enter_start(disc->state, *ghosts);
   const auto joined = [=](int i, int j) {
     return molecule[i] == molecule[j] &&
         !(self_contact && fix_stress->distance_at_start(i, j) >= far);
@@ -498,7 +496,9 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
 void PairFSISolid::advance_hourglass(double dt)
 {
   const int dim = disc->dim;
-  forward_comm(step->profile, comm, this);
+  Message gradients(lmp, disc->state);
+  gradients.add(grad, 0, dim * dim, {SOLID});
+  ghosts->send(gradients);
   hourglass_rate.assign((size_t) images.end() * row_of_forces(dim), 0.0);
   if (!own.rows.empty() || images.any())
     with_loops([&](auto packed, const auto &kernel, auto terms) {
@@ -511,7 +511,7 @@ void PairFSISolid::advance_hourglass(double dt)
             rate);
       });
     });
-  if (force->newton_pair) reverse_comm(step->profile, comm, this);
+  ghosts->add(hourglass_rate.data(), row_of_forces(dim));
   dim == 2 ? rotate_hourglass<2>(dt) : rotate_hourglass<3>(dt);
 }
 
@@ -520,7 +520,7 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
   for (int i = 0; i < atom->nlocal; i++) {
     if (material[atom->type[i]].species != SOLID) continue;
     double Q[D * D], half_turned[D], turned[D] = {};
-    double *const q = fix_stress->hourglass_force(i),
+    double *const q = fix_stress->hourglass[i],
                   *const rate = &hourglass_rate[(size_t) i * row_of_forces(D)];
     rotation<D>(grad[i], 0.5 * dt, Q);
     for (int a = 0; a < D; a++) {
@@ -531,41 +531,6 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
       for (int b = 0; b < D; b++) turned[a] += Q[a * D + b] * half_turned[b];
     std::copy_n(turned, D, q);
   }
-}
-
-int PairFSISolid::pack_forward_comm(int n, int *listed, double *buf, int, int *)
-{
-  double *const first = buf;
-  for_solids(n, listed, 0, [&](int i) {
-    buf = std::copy_n(grad[i], comm_forward, buf);
-  });
-  return buf - first;
-}
-
-void PairFSISolid::unpack_forward_comm(int n, int first, double *buf)
-{
-  for_solids(n, nullptr, first, [&](int i) {
-    std::copy_n(buf, comm_forward, grad[i]);
-    buf += comm_forward;
-  });
-}
-
-int PairFSISolid::pack_reverse_comm(int n, int first, double *buf)
-{
-  int m = 0;
-  for_solids(n, nullptr, first, [&](int i) {
-    for (int k = 0; k < comm_reverse; k++)
-      buf[m++] = hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k];
-  });
-  return m;
-}
-
-void PairFSISolid::unpack_reverse_comm(int n, int *listed, double *buf)
-{
-  for_solids(n, listed, 0, [&](int i) {
-    for (int k = 0; k < comm_reverse; k++)
-      hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k] += *buf++;
-  });
 }
 
 void PairFSISolid::add_number_density(double *psi, bool all_bodies)
@@ -607,7 +572,7 @@ void PairFSISolid::compute(int eflag, int vflag)
     double **f = atom->f;
     for (int i = 0; i < atom->nlocal; i++) {
       if (material[atom->type[i]].species != SOLID) continue;
-      const double *q = fix_stress->hourglass_force(i);
+      const double *q = fix_stress->hourglass[i];
       for (int d = 0; d < disc->dim; d++) f[i][d] += q[d];
     }
   }

@@ -46,10 +46,6 @@ class PairFSISolid : public PairFSI {
   ~PairFSISolid() override;
   void init_style() override;
   void compute(int, int) override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
-  int pack_reverse_comm(int, int, double *) override;
-  void unpack_reverse_comm(int, int *, double *) override;
   std::vector<Effect> effects() const override;
   double memory_usage() override;
 

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_inlet.h"
+#include "fsi_fields.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
@@ -95,7 +96,6 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
   extvector = 1;
   global_freq = 1;
   restart_global = 1;
-  comm_forward = 1;
 }
 
 FixFSIRefine::~FixFSIRefine() = default;
@@ -145,6 +145,7 @@ void FixFSIRefine::init()
   disc = &fix_fsi->disc;
   step = &fix_fsi->step;
   ledger = &fix_fsi->ledger;
+  ghosts = &fix_fsi->ghosts;
   population = &fix_fsi->population;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", label);
@@ -236,8 +237,8 @@ void FixFSIRefine::pre_exchange()
 void FixFSIRefine::event(bool may_split, bool may_merge)
 {
   const bool first = update->ntimestep == update->firststep;
-  renew_ghosts();
-  step->gather_walls(lmp);    // those of the last force are a step behind
+  renew_ghosts(lmp);          // those that lists of before have are a step old
+  step->gather_walls(lmp);    // likewise those of the last force
   if (disc->sight) disc->sight->find_bodies();
   std::fill_n(local, NTOTAL, 0.0);
   look(may_split, may_merge);
@@ -276,24 +277,11 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   population->release(released);
   population->end();
   if (settle_steps == 0) return;
-  renew_ghosts();
+  renew_ghosts(lmp);
   std::vector<char> moves(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++)
     moves[i] = level(i) >= 0 && !in_open_end(i, 0) && is_moved(i, lmp);
   Settling(lmp, *disc, *step, *ledger, moves, events).run(settle_steps);
-}
-
-// where they belong, with ghosts that are where these are: those that lists of before have are a
-// step old
-void FixFSIRefine::renew_ghosts()
-{
-  domain->pbc();
-  if (domain->box_change || update->ntimestep == update->firststep) {
-    domain->reset_box();
-    comm->setup();
-  }
-  comm->exchange();
-  comm->borders();
 }
 
 // Of each particle: the zones that it is in, and what it is to do. A particle merges a coarse
@@ -319,7 +307,7 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
     }
     carried[i] = wish;
   }
-  send(carried);
+  ghosts->send(carried);
 }
 
 // a level is a mass, too: a type set since leaves those of another one
@@ -536,7 +524,7 @@ void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells 
       if (sweep == 0 || (hash_of(atom->tag[i], sweep) >> 20 & 1))
         next[i] = 1 + choose_direction(i, cells);
     std::copy(next.begin(), next.end(), heading.begin());
-    send(heading);
+    ghosts->send(heading);
   }
 }
 
@@ -632,12 +620,12 @@ void FixFSIRefine::choose_partners()
       chosen[i] = best_partner(i, cells);
       partner[i] = chosen[i] < 0 ? 0 : tag[chosen[i]];
     }
-    send(partner);
+    ghosts->send(partner);
     std::vector<int> found;
     for (int i = 0; i < atom->nlocal; i++)
       if (partner[i] > 0 && partner[chosen[i]] == tag[i]) found.push_back(i);
     for (const int i : found) partner[i] = -partner[i];
-    send(partner);
+    ghosts->send(partner);
   }
   for (int i = 0; i < atom->nlocal; i++) local[WAITING] += wants(i) && partner[i] >= 0;
 }
@@ -744,25 +732,6 @@ void FixFSIRefine::divide(const std::vector<Division> &divisions)
 /* ----------------------------------------------------------------------
    messages
 ------------------------------------------------------------------------- */
-
-void FixFSIRefine::send(std::vector<tagint> &numbers)
-{
-  message = &numbers;
-  comm->forward_comm(this);
-  message = nullptr;
-}
-
-int FixFSIRefine::pack_forward_comm(int n, int *list, double *buf, int, int *)
-{
-  for (int k = 0; k < n; k++) buf[k] = ubuf((*message)[list[k]]).d;
-  return n;
-}
-
-void FixFSIRefine::unpack_forward_comm(int n, int first, double *buf)
-{
-  for (int k = 0; k < n; k++) (*message)[first + k] = (tagint) ubuf(buf[k]).i;
-}
-
 void FixFSIRefine::write_restart(FILE *fp)
 {
   Record record(lmp, style);

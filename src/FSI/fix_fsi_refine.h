@@ -31,6 +31,7 @@ namespace LAMMPS_NS {
 namespace FSI {
   class Cells;
   struct Discretization;
+  class Ghosts;
   struct Ledger;
   class Population;
   class Sight;
@@ -51,8 +52,6 @@ class FixFSIRefine : public Fix {
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
   double compute_vector(int n) override { return total[n]; }
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -79,6 +78,7 @@ class FixFSIRefine : public Fix {
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
+  FSI::Ghosts *ghosts = nullptr;
   FSI::Population *population = nullptr;
   std::vector<class FixFSIInlet *> open_ends;
   std::vector<std::array<double, 3>> directions;    // of splitting
@@ -90,7 +90,6 @@ class FixFSIRefine : public Fix {
   // per particle, local and ghost: see Wish; name; direction, from 1 on, 0: it does not split
   std::vector<tagint> carried, partner, heading;
   std::vector<int> chosen;    // per local one: index of its partner
-  std::vector<tagint> *message = nullptr;
   double local[NTOTAL] = {};
 
   int finest() const { return (int) types.size() - 1; }
@@ -102,7 +101,6 @@ class FixFSIRefine : public Fix {
   void check_others() const;
 
   void event(bool may_split, bool may_merge);
-  void renew_ghosts();
   void look(bool may_split, bool may_merge);
   bool in_open_end(int i, int wish) const;
   void check_zones() const;
@@ -119,7 +117,6 @@ class FixFSIRefine : public Fix {
   std::vector<Union> plan_unions(std::vector<int> &gone);
   void unite(const std::vector<Union> &);
   void divide(const std::vector<Division> &);
-  void send(std::vector<tagint> &);
 };
 
 }    // namespace LAMMPS_NS

@@ -51,7 +51,6 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   if (plane_stress && domain->dimension == 3) refuse(error, Refused::PLANE_STRESS_3D);
   if (plastic && plane_stress) refuse(error, Refused::PLASTIC_PLANE);
   restart_global = 1;
-  comm_forward = domain->dimension;
   choose_fields();
   register_fields();
 }
@@ -170,7 +169,7 @@ template double FixFSIStress::advance_stress<2>(int, const double *, double, con
 template double FixFSIStress::advance_stress<3>(int, const double *, double, const State &, bool);
 
 // Where solids were when they were first seen, for contact of a body with itself; ghosts are told.
-void FixFSIStress::enter_start(const std::vector<State> &state)
+void FixFSIStress::enter_start(const std::vector<State> &state, Ghosts &ghosts)
 {
   const int dim = domain->dimension;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -179,10 +178,8 @@ void FixFSIStress::enter_start(const std::vector<State> &state)
     start[i][dim] = 1.0;
   }
   Message places(lmp, state);
-  places.add(start, 0, dim, {NONE, FLUID, SOLID, RIGID});
-  sent = &places;
-  comm->forward_comm(this);
-  sent = nullptr;
+  places.add(start, 0, dim, {SOLID});
+  ghosts.send(places);
 }
 
 double FixFSIStress::distance_at_start(int i, int j) const

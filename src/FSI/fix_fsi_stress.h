@@ -48,10 +48,9 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
                          // hourglass control
   int plane_stress;
   int plastic;    // materials yield
-  double *hourglass_force(int i) { return hourglass[i]; }
   // keyword self of pair_style fsi/solid: enters the places of those that have none yet, then tells
   // ghosts; how far two of them were apart
-  void enter_start(const std::vector<FSI::State> &);
+  void enter_start(const std::vector<FSI::State> &, FSI::Ghosts &);
   double distance_at_start(int i, int j) const;
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between

@@ -304,10 +304,7 @@ void FixFSIWallParticle::sum_up()
     });
   });
   sent = from_ghosts.get();
-  if (force->newton_pair)
-    exchange(step->profile, comm, [this]() {
-      swaps->reverse<Fix>(this);
-    });
+  if (force->newton_pair) swaps->reverse<Fix>(step->profile, this);
 }
 
 // Acceleration: in this step where the motion is known, else in the last; a wall that is set in
@@ -374,9 +371,7 @@ void FixFSIWallParticle::end_state(bool advance)
     }
   }
   sent = to_ghosts.get();
-  exchange(step->profile, comm, [this]() {
-    swaps->forward<Fix>(this);
-  });
+  swaps->forward<Fix>(step->profile, this);
 }
 
 // force of the fluid: only pairs have added to f so far

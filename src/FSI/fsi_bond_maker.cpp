@@ -22,6 +22,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fsi_cells.h"
+#include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_hub.h"
@@ -475,7 +476,7 @@ void Quadrature::count_layers(const std::vector<int> &of)
         const int j = ahead[n][k];
         if (m == 1 ? j < 0 : (j >= 0 && layer_of(j, k) == m - 1)) layer[i * 2 * dim + k] = m;
       }
-    bonds.send(layer.data());
+    bonds.messages->send(layer.data(), 2 * dim);
   }
 }
 

@@ -40,7 +40,6 @@ BondStore::BondStore(LAMMPS *lmp, int narg, char **arg) :
   stores_ids = 1;
   maxexchange = 2;
   maxexchange_dynamic = 1;
-  comm_forward = 2 * domain->dimension;
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -395,26 +394,6 @@ int BondStore::pack_restart(int i, double *buf)
 int BondStore::size_restart(int i)
 {
   return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + nwhole()) + nplace();
-}
-
-void BondStore::send(double *numbers)
-{
-  sent = numbers;
-  comm->forward_comm(this);
-  sent = nullptr;
-}
-
-int BondStore::pack_forward_comm(int n, int *listed, double *buf, int, int *)
-{
-  double *const begin = buf;
-  for (int k = 0; k < n; k++)
-    buf = std::copy_n(sent + (size_t) listed[k] * comm_forward, comm_forward, buf);
-  return buf - begin;
-}
-
-void BondStore::unpack_forward_comm(int n, int first, double *buf)
-{
-  std::copy_n(buf, (size_t) n * comm_forward, sent + (size_t) first * comm_forward);
 }
 
 double BondStore::memory_usage()

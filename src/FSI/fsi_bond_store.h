@@ -27,6 +27,7 @@
 namespace LAMMPS_NS {
 namespace FSI {
   struct Discretization;
+  class Ghosts;
 
   class BondStore : public Fix {
    public:
@@ -37,14 +38,13 @@ namespace FSI {
     void set_arrays(int i) override { slot[i] = NO_BONDS; }
     int pack_exchange(int, double *) override;
     int unpack_exchange(int, double *) override;
-    int pack_forward_comm(int, int *, double *, int, int *) override;
-    void unpack_forward_comm(int, int, double *) override;
     int pack_restart(int, double *) override;
     int size_restart(int) override;
     int maxsize_restart() override { return 3 + maxbond * (nvalue + nwhole()) + nplace(); }
     double memory_usage() override;
 
     const Discretization *disc = nullptr;    // from init() on
+    Ghosts *messages = nullptr;              // likewise: numbers of all particles
     bool quadratic = true;                   // gradients exact for quadratic fields, where
                                              // neighbors suffice
     // per bond, 2 D + 2 numbers: G_ij, X_j - X_i, w = V_i V_j W/|X|^2, V_i V_j (grad W)/x_ij
@@ -113,8 +113,6 @@ namespace FSI {
     // local solid atoms, and ghosts of solid atoms
     std::vector<int> solids, ghosts;
 
-    void send(double *numbers);    // 2 D of each particle, to its ghosts
-
    protected:
     int unpack(int i, const double *buf);
 
@@ -127,7 +125,6 @@ namespace FSI {
     std::vector<int> nbond, local, unused, through;
     std::vector<tagint> partner, tag_of;
     std::vector<double> data, moment, quadrature, places;
-    double *sent = nullptr;
 
     size_t first(int i) const { return (size_t) slot[i] * maxbond; }
     int nwhole() const { return keeps_images ? 2 : 1; }    // numbers of a bond beside its doubles

@@ -333,9 +333,9 @@ static int mask_of(std::initializer_list<int> species)
   return mask;
 }
 
-void Message::add(double *&array, std::initializer_list<int> species, const bool *when, int n)
+void Message::add(double *&array, std::initializer_list<int> species, int n)
 {
-  columns.push_back({&array, nullptr, 0, n, mask_of(species), when});
+  columns.push_back({&array, nullptr, 0, n, mask_of(species)});
 }
 
 void Message::add(double **&array, int first, int n, std::initializer_list<int> species,
@@ -395,7 +395,7 @@ const Message &Ghosts::message_of(double *rows, int columns)
 {
   carried = rows;
   one_array.clear();
-  one_array.add(carried, {NONE, FLUID, SOLID, RIGID}, nullptr, columns);
+  one_array.add(carried, {NONE, FLUID, SOLID, RIGID}, columns);
   return one_array;
 }
 
@@ -409,6 +409,14 @@ void Ghosts::add(const Message &message, int columns)
 {
   carrier.sent = &message;
   if (force->newton_pair) reverse_comm(profile, comm, &carrier, columns);
+}
+
+void Ghosts::send(std::vector<tagint> &numbers)
+{
+  std::vector<double> bits(numbers.size());
+  for (size_t i = 0; i < bits.size(); i++) bits[i] = ubuf(numbers[i]).d;
+  send(bits.data());
+  for (size_t i = atom->nlocal; i < bits.size(); i++) numbers[i] = (tagint) ubuf(bits[i]).i;
 }
 
 void Swaps::find(const std::function<bool(int)> &is_chosen)
@@ -437,8 +445,9 @@ double *Swaps::pass(int to, int n, int from, int most)
   return in.data();
 }
 
-template <class Owner> void Swaps::forward(Owner *owner, int size)
+template <class Owner> void Swaps::forward(Profile *profile, Owner *owner, int size)
 {
+  const Phase phase = messages(profile, comm);
   if (!chosen) return comm->forward_comm(owner, size);
   if (size == 0) size = owner->comm_forward;
   for (Swap &s : swaps) {
@@ -448,8 +457,9 @@ template <class Owner> void Swaps::forward(Owner *owner, int size)
   }
 }
 
-template <class Owner> void Swaps::reverse(Owner *owner, int size)
+template <class Owner> void Swaps::reverse(Profile *profile, Owner *owner, int size)
 {
+  const Phase phase = messages(profile, comm);
   if (!chosen) return comm->reverse_comm(owner, size);
   if (size == 0) size = owner->comm_reverse;
   for (auto s = swaps.rbegin(); s != swaps.rend(); ++s) {
@@ -460,7 +470,7 @@ template <class Owner> void Swaps::reverse(Owner *owner, int size)
   }
 }
 
-template void Swaps::forward(Pair *, int);
-template void Swaps::forward(Fix *, int);
-template void Swaps::reverse(Pair *, int);
-template void Swaps::reverse(Fix *, int);
+template void Swaps::forward(Profile *, Pair *, int);
+template void Swaps::forward(Profile *, Fix *, int);
+template void Swaps::reverse(Profile *, Pair *, int);
+template void Swaps::reverse(Profile *, Fix *, int);

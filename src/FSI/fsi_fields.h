@@ -108,9 +108,8 @@ namespace FSI {
     Message(const Message &) = delete;    // holds addresses of its owner
     void clear() { columns.clear(); }
     int group = 0;    // bit of the group whose particles it is about; 0: all
-    // when: null, or whether it is carried now; n: numbers of an atom, side by side
-    void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr,
-             int n = 1);
+    // n: numbers of an atom, side by side; when: null, or whether it is carried now
+    void add(double *&array, std::initializer_list<int> species, int n = 1);
     void add(double **&array, int first, int n, std::initializer_list<int> species,
              const bool *when = nullptr);
     int size() const;    // at most, of an atom
@@ -193,6 +192,7 @@ namespace FSI {
     static constexpr int MOST_COLUMNS = 16;
     void send(double *rows, int columns = 1) { send(message_of(rows, columns), columns); }
     void add(double *rows, int columns = 1) { add(message_of(rows, columns), columns); }
+    void send(std::vector<tagint> &numbers);    // one per particle
 
    private:
     FixFields &carrier;
@@ -211,8 +211,8 @@ namespace FSI {
     void find(const std::function<bool(int)> &is_chosen);    // whenever ghosts are new
     // for a pair style or a fix, which packs and unpacks the chosen particles only; size: numbers
     // of each, 0: comm_forward, comm_reverse
-    template <class Owner> void forward(Owner *, int size = 0);
-    template <class Owner> void reverse(Owner *, int size = 0);
+    template <class Owner> void forward(Profile *, Owner *, int size = 0);
+    template <class Owner> void reverse(Profile *, Owner *, int size = 0);
 
    private:
     struct Swap : Exchange {

@@ -81,25 +81,22 @@ namespace FSI {
     int before;
   };
 
-  // communication of a fix or pair style of the package; nothing is kept of what happens outside a
-  // step, in output
-  template <class F> void exchange(Profile *profile, const Comm *comm, F &&send)
+  // that of messages of a fix or pair style of the package; nothing is kept of what happens outside
+  // a step, in output
+  inline Phase messages(Profile *profile, const Comm *comm)
   {
     const bool known = profile && profile->current != Profile::OUTSIDE && comm->nprocs > 1;
-    const Phase phase(known ? profile : nullptr, Profile::MESSAGES);
-    send();
+    return Phase(known ? profile : nullptr, Profile::MESSAGES);
   }
   template <class T> void forward_comm(Profile *profile, Comm *comm, T *style, int size = 0)
   {
-    exchange(profile, comm, [&]() {
-      comm->forward_comm(style, size);
-    });
+    const Phase phase = messages(profile, comm);
+    comm->forward_comm(style, size);
   }
   template <class T> void reverse_comm(Profile *profile, Comm *comm, T *style, int size = 0)
   {
-    exchange(profile, comm, [&]() {
-      comm->reverse_comm(style, size);
-    });
+    const Phase phase = messages(profile, comm);
+    comm->reverse_comm(style, size);
   }
 
 }    // namespace FSI

@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fsi_cells.h"
+#include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_pair_laws.h"
@@ -42,10 +43,10 @@ void SelfContact::find_pairs()
   pairs.clear();
   if (range == 0.0) return;
   const int dim = domain->dimension;
-  std::vector<double> places((size_t) atom->nmax * 2 * dim);
+  std::vector<double> places((size_t) atom->nmax * dim);
   for (const int i : bonds.solids)
-    std::copy_n(bonds.place(i), dim, places.begin() + (size_t) i * 2 * dim);
-  bonds.send(places.data());
+    std::copy_n(bonds.place(i), dim, places.begin() + (size_t) i * dim);
+  bonds.messages->send(places.data(), dim);
   const Cells cells(atom->x, atom->nlocal + atom->nghost, dim,
                     range * largest_dx() + neighbor->skin, [this](int i) {
                       return bonds.is_solid(i);
@@ -63,7 +64,7 @@ void SelfContact::find_pairs_of(int i, const std::vector<double> &places, const 
     if (j == i || atom->molecule[j] != atom->molecule[i]) return;
     double Rsq = 0.0;
     for (int a = 0; a < dim; a++) {
-      double X = places[(size_t) j * 2 * dim + a] - places[(size_t) i * 2 * dim + a];
+      double X = places[(size_t) j * dim + a] - places[(size_t) i * dim + a];
       if (domain->periodicity[a]) X -= domain->prd[a] * std::round(X / domain->prd[a]);
       Rsq += X * X;
     }

@@ -91,15 +91,6 @@ class PairFSI : public Pair, public FSI::Part {
   void allocate();
   std::string named_effects() const;    // those that the script names, for messages
   void check_tally();
-
-  // the solid ones among the atoms of a message: those listed, or n from first on
-  template <class Visit> void for_solids(int n, const int *listed, int first, Visit visit) const
-  {
-    for (int k = 0; k < n; k++) {
-      const int i = listed ? listed[k] : first + k;
-      if (material[atom->type[i]].species == FSI::SOLID) visit(i);
-    }
-  }
 };
 
 }    // namespace LAMMPS_NS

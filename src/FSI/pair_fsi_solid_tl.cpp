@@ -275,9 +275,7 @@ void PairFSISolidTL::internal_forces()
   }
   if (!reference->self.pairs.empty())
     disc->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
-  exchange(step->profile, comm, [this]() {
-    reference->swaps.reverse<Pair>(this);
-  });
+  reference->swaps.reverse<Pair>(step->profile, this);
 }
 
 void PairFSISolidTL::find_rows()
@@ -394,9 +392,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       };
       have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
     });
-    exchange(step->profile, comm, [this]() {
-      reference->swaps.forward<Pair>(this, 1);
-    });
+    reference->swaps.forward<Pair>(step->profile, this, 1);
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
     images.for_each([&](int k, int of, const Mirror &, bool) {
@@ -415,9 +411,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     images.for_each([&](int k, int of, const Mirror &, bool) {
       smoothed.force[of] += smoothed.force[k];
     });
-    exchange(step->profile, comm, [this]() {
-      reference->swaps.reverse<Pair>(this, 1);
-    });
+    reference->swaps.reverse<Pair>(step->profile, this, 1);
   });
   sends_strains = false;
   return energy;
@@ -796,14 +790,22 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   return s;
 }
 
+// of a message: solids among the atoms listed, or n from first on
+template <class Visit>
+void PairFSISolidTL::for_solids(int n, const int *listed, int first, Visit visit) const
+{
+  for (int k = 0; k < n; k++) {
+    const int i = listed ? listed[k] : first + k;
+    if (material[atom->type[i]].species == SOLID) visit(i);
+  }
+}
+
 // Ghosts: positions (and velocities) out, forces back; of solids only. Fix adapt may give viscosity
 // to a style that began without.
 void PairFSISolidTL::forward_positions()
 {
   sends_velocities = has_artificial() || laws.facts().by_rate;
-  exchange(step->profile, comm, [this]() {
-    reference->swaps.forward<Pair>(this, sends_velocities ? comm_forward : disc->dim);
-  });
+  reference->swaps.forward<Pair>(step->profile, this, sends_velocities ? comm_forward : disc->dim);
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)

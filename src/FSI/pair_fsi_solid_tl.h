@@ -140,6 +140,7 @@ class PairFSISolidTL : public PairFSI {
   FSI::VolumetricStrain &smoothed;
   // what messages carry: strains, or positions and forces; with positions velocities, too
   bool sends_strains = false, sends_velocities = false;
+  template <class Visit> void for_solids(int n, const int *listed, int first, Visit) const;
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
   // what call(laws per type, constant with the dimension) returns
