@@ -700,7 +700,5 @@ std::vector<PairFSI::Effect> PairFSISolid::effects() const
 double PairFSISolid::memory_usage()
 {
   return fields.memory_usage() + own.memory_usage() + others.memory_usage() +
-      (double) (rate_records.capacity() + force_records.capacity() + forces.capacity() +
-                hourglass_rate.capacity()) *
-      sizeof(double);
+      bytes_of(rate_records, force_records, forces, hourglass_rate);
 }

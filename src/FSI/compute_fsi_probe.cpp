@@ -24,6 +24,7 @@
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_rows.h"
 #include "fsi_sight.h"
 #include "group.h"
 #include "memory.h"
@@ -572,8 +573,8 @@ void ComputeFSIProbe::compute_array()
 
 double ComputeFSIProbe::memory_usage()
 {
-  double bytes = (double) (points.capacity() + sums.capacity() + all.capacity()) * sizeof(double);
+  double bytes = bytes_of(points, sums, all);
   for (const auto &place : places)
-    for (const auto &near : place.near) bytes += (double) near.capacity() * sizeof(Particle);
+    for (const auto &near : place.near) bytes += bytes_of(near);
   return bytes;
 }

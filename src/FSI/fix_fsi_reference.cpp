@@ -321,6 +321,5 @@ void FixFSIReference::unpack_restart(int i, int nth)
 
 double FixFSIReference::memory_usage()
 {
-  return BondStore::memory_usage() + damage.memory_usage() +
-      (double) self.pairs.capacity() * sizeof(SelfContact::SelfPair);
+  return BondStore::memory_usage() + damage.memory_usage() + bytes_of(self.pairs);
 }

@@ -750,6 +750,5 @@ void FixFSIRefine::restart(char *buf)
 
 double FixFSIRefine::memory_usage()
 {
-  return (double) (carried.capacity() + partner.capacity()) * sizeof(tagint) +
-      (double) chosen.capacity() * sizeof(int);
+  return bytes_of(carried, partner, heading, chosen);
 }

@@ -425,5 +425,5 @@ void FixFSIWallParticle::restart(char *buf)
 
 double FixFSIWallParticle::memory_usage()
 {
-  return FixFields::memory_usage() + (double) members.capacity() * sizeof(members[0]);
+  return FixFields::memory_usage() + bytes_of(members);
 }

@@ -399,8 +399,5 @@ int BondStore::size_restart(int i)
 double BondStore::memory_usage()
 {
   return (double) atom->nmax * sizeof(int) + images.memory_usage() +
-      (double) (local.capacity() + through.capacity()) * sizeof(int) +
-      (double) (partner.capacity() + tag_of.capacity()) * sizeof(tagint) +
-      (double) (data.capacity() + moment.capacity() + quadrature.capacity() + places.capacity()) *
-      sizeof(double);
+      bytes_of(local, through, partner, tag_of, data, moment, quadrature, places);
 }

@@ -39,10 +39,7 @@ namespace FSI {
     using Spare = std::function<double(int)>;
     void break_bonds(double stretch, const Energy &, const Spare &);
     void forget() { seen.clear(); }    // indices have changed
-    double memory_usage() const
-    {
-      return (double) (seen.capacity() + slack.capacity()) * sizeof(double);
-    }
+    double memory_usage() const { return bytes_of(seen, slack); }
 
    private:
     BondStore &bonds;

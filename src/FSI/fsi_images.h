@@ -127,11 +127,7 @@ namespace FSI {
     }
     double **positions(double **x) { return any() ? xs.data() : x; }
     double **velocities(double **v) { return any() ? vs.data() : v; }
-    double memory_usage() const
-    {
-      return (double) all.capacity() * sizeof(Image) +
-          (double) (xs.capacity() + vs.capacity() + rows.capacity()) * sizeof(double);
-    }
+    double memory_usage() const { return bytes_of(all, xs, vs, rows); }
 
    private:
     struct Image {

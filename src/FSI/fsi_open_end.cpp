@@ -21,6 +21,7 @@
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_refusals.h"
+#include "fsi_rows.h"
 #include "neighbor.h"
 #include "region.h"
 #include "update.h"
@@ -567,12 +568,9 @@ void Nodes::add_up()
 
 double Nodes::memory_usage() const
 {
-  size_t numbers = sums_given.capacity() + sums.capacity(), nodes = 0;
-  for (const auto &peer : peers) {
-    numbers += peer.out.capacity() + peer.in.capacity();
-    nodes += peer.give.capacity() + peer.take.capacity();
-  }
-  return (double) numbers * sizeof(double) + (double) nodes * sizeof(int);
+  double bytes = bytes_of(sums_given, sums);
+  for (const auto &peer : peers) bytes += bytes_of(peer.out, peer.in, peer.give, peer.take);
+  return bytes;
 }
 
 // the row of a fit's inverse that gives its value at the node: terms 1, x, xx; 1, x, y, xx, xy, yy

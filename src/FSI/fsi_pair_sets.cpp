@@ -119,11 +119,9 @@ double PairSets::beyond_lists() const
 
 double PairSets::memory_usage() const
 {
-  double bytes = (double) sorted_at.capacity() * sizeof(double) +
-      (double) beside.capacity() * sizeof(beside[0]);
+  double bytes = bytes_of(sorted_at, beside);
   for (const auto &set : sets) {
-    bytes += set.rows.memory_usage() + (double) set.near.capacity() * sizeof(Row) +
-        (double) set.visible.capacity() * sizeof(double);
+    bytes += set.rows.memory_usage() + bytes_of(set.near, set.visible);
     for (const auto &rows : set.images) bytes += rows.memory_usage();
   }
   return bytes;

@@ -27,6 +27,12 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
+  // that vectors have room for
+  template <class... Vector> double bytes_of(const Vector &...v)
+  {
+    return (0.0 + ... + (double) (v.capacity() * sizeof(typename Vector::value_type)));
+  }
+
   // A particle i (local or ghost) and n neighbors j, each pair of particles in one row. In a row of
   // images the last neighbor may be i itself.
   struct Row {
@@ -77,10 +83,7 @@ namespace FSI {
         first += row.n;
       }
     }
-    double memory_usage() const
-    {
-      return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int);
-    }
+    double memory_usage() const { return bytes_of(rows, pool); }
 
    private:
     std::vector<int> pool;

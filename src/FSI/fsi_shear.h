@@ -53,11 +53,7 @@ namespace FSI {
     // of local and ghost particles; those of fluids without such a law are constant
     void find_viscosities(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &);
     const double *viscosities() const { return viscosity.data(); }
-    double memory_usage() const
-    {
-      return (double) (sums.capacity() + gradients.capacity() + viscosity.capacity()) *
-          sizeof(double);
-    }
+    double memory_usage() const { return bytes_of(sums, gradients, viscosity); }
 
    private:
     const Discretization &disc;

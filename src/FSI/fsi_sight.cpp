@@ -338,9 +338,3 @@ Sight::Backfill Sight::backfill(size_t level, const Face &face) const
   };
   return {over(all.force, missing.force), over(all.weight, missing.weight)};
 }
-
-double Sight::memory_usage() const
-{
-  return (double) places.capacity() * sizeof(Place) + (double) seen.capacity() * sizeof(Seen) +
-      (double) first.capacity() * sizeof(int);
-}

@@ -19,6 +19,7 @@
 #ifndef LMP_FSI_SIGHT_H
 #define LMP_FSI_SIGHT_H
 
+#include "fsi_rows.h"
 #include "pointers.h"
 
 #include <vector>
@@ -59,7 +60,7 @@ namespace FSI {
     };
     Backfill backfill(size_t level) const;
 
-    double memory_usage() const;
+    double memory_usage() const { return bytes_of(places, seen, first); }
 
    private:
     const Discretization &disc;

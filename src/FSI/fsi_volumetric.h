@@ -54,10 +54,7 @@ namespace FSI {
     }
     double memory_usage() const
     {
-      size_t n = 0;
-      for (auto *x : {&modulus, &weight, &own, &stiffness, &strain, &mean, &force})
-        n += x->capacity();
-      return (double) n * sizeof(double);
+      return bytes_of(modulus, weight, own, stiffness, strain, mean, force);
     }
 
     static double excess(const Material &m)

@@ -93,11 +93,6 @@ const Cut *CutSolids::of_particles()
   return any ? &cut : nullptr;
 }
 
-double CutSolids::memory_usage() const
-{
-  return (double) (parts.capacity() + part_rates.capacity()) * sizeof(double);
-}
-
 // of a step with sub-steps: the types that are light
 std::vector<char> LightSolids::types() const
 {

@@ -40,7 +40,7 @@ namespace FSI {
     // where particles are in this step; takes what is behind walls out of step.wmask
     void find(StepState &step);
     const Cut *of_particles();    // null: no solid passes through a wall
-    double memory_usage() const;
+    double memory_usage() const { return bytes_of(parts, part_rates); }
 
    private:
     const Discretization &disc;

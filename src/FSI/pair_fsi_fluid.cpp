@@ -1041,9 +1041,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
-      pressure_over_density.capacity();
   return fields.memory_usage() + pairs.memory_usage() + members->cut_solids->memory_usage() +
       members->shear->memory_usage() + members->implicit->memory_usage() +
-      (double) numbers * sizeof(double);
+      bytes_of(points, forces, viscous_forces, pressure_over_density);
 }

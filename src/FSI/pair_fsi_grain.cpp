@@ -353,9 +353,7 @@ void PairFSIGrain::unpack_reverse_comm(int n, int *listed, double *buf)
 
 double PairFSIGrain::memory_usage()
 {
-  return (double) touches.capacity() * sizeof(Touch) +
-      (double) (grains.capacity() + number.capacity()) * sizeof(int) +
-      (double) (sums.capacity() + given.capacity()) * sizeof(double);
+  return bytes_of(touches, grains, number, sums, given);
 }
 
 Facts PairFSIGrain::facts() const

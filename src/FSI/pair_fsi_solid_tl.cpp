@@ -1038,6 +1038,5 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 double PairFSISolidTL::memory_usage()
 {
   return (double) nmax * row_of_forces(domain->dimension) * sizeof(double) +
-      (double) points.capacity() * sizeof(double) + (double) rows.capacity() * sizeof(BondRow) +
-      smoothed.memory_usage();
+      bytes_of(points, rows) + smoothed.memory_usage();
 }
