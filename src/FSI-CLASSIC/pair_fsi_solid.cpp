@@ -21,6 +21,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_fields.h"
+#include "fsi_find.h"
 #include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
@@ -71,7 +72,7 @@ PairFSISolid::~PairFSISolid() = default;
 
 State PairFSISolid::make_state(const Material &m) const
 {
-  const auto *const stress = FixFSIStress::find(lmp);
+  const auto *const stress = first_of(fixes_of<FixFSIStress>(lmp));
   State s = solid_state(m, stress && stress->plane_stress);
   s.form = UPDATED_LAGRANGIAN;
   return s;
@@ -81,7 +82,7 @@ void PairFSISolid::init_style()
 {
   PairFSI::init_style();
   check_contact();
-  fix_stress = FixFSIStress::find(lmp);
+  fix_stress = first_of(fixes_of<FixFSIStress>(lmp));
   if (!fix_stress) refuse(error, Refused::STRESS);
   bodies = several_bodies();
 }

@@ -62,7 +62,7 @@ ComputeFSIAtom::~ComputeFSIAtom()
 void ComputeFSIAtom::init()
 {
   FixFSI::find(lmp, "Compute fsi/atom");
-  const auto *const stress = FixFSIStress::find(lmp);
+  const auto *const stress = first_of(fixes_of<FixFSIStress>(lmp));
   if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
       (!stress || !stress->plastic))
     refuse(error, Refused::PLASTIC_STRAIN);
@@ -101,9 +101,9 @@ void ComputeFSIAtom::compute_peratom()
     fix_fsi->number_density.find(psi.data());
   }
   shear = fluid ? &fluid->find_shear() : nullptr;
-  solid_tl = PairFSISolidTL::find(lmp);
+  solid_tl = first_of(pairs_of<PairFSISolidTL>(lmp));
   if (solid_tl) solid_tl->begin_stress();
-  fix_stress = FixFSIStress::find(lmp);
+  fix_stress = first_of(fixes_of<FixFSIStress>(lmp));
 
   for (int i = 0; i < atom->nlocal; i++) {
     const bool chosen = atom->mask[i] & groupbit;

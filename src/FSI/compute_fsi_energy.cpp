@@ -18,6 +18,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_find.h"
 #include "fsi_hub.h"
 #include "fsi_refusals.h"
 #include "pair_fsi_solid_tl.h"
@@ -74,7 +75,7 @@ void ComputeFSIEnergy::compute_vector()
   const Ledger &ledger = fix_fsi->ledger;
   double sum[NHAVE + Ledger::NTERM] = {};    // of this rank
   double **const v = atom->v, **const f = atom->f;
-  const auto *const stress = FixFSIStress::find(lmp);
+  const auto *const stress = first_of(fixes_of<FixFSIStress>(lmp));
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = disc.state[atom->type[i]];
     // what a wall gets is in the term of walls; what grains get, in that of coupling
@@ -96,7 +97,8 @@ void ComputeFSIEnergy::compute_vector()
     sum[2] += stored(i, atom, disc);
     if (s.form == UPDATED_LAGRANGIAN) sum[3] += stress->shear_energy(i, s.shear);
   }
-  if (const auto *solid_tl = PairFSISolidTL::find(lmp)) sum[3] += solid_tl->strain_energy;
+  if (const auto *solid_tl = first_of(pairs_of<PairFSISolidTL>(lmp)))
+    sum[3] += solid_tl->strain_energy;
   for (int k = 0; k < Ledger::NTERM; k++) sum[NHAVE + k] = ledger.energy_out[k];
   sum[NHAVE + Ledger::WALLS] += ledger.guarding[0];
   sum[NHAVE + Ledger::COUPLING] += ledger.guarding[1];

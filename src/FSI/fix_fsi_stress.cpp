@@ -60,11 +60,6 @@ FixFSIStress::~FixFSIStress()
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
 }
 
-FixFSIStress *FixFSIStress::find(LAMMPS *lmp)
-{
-  return first_of(fixes_of<FixFSIStress>(lmp));
-}
-
 void FixFSIStress::choose_fields()
 {
   const Facts facts = facts_of_solids(lmp);

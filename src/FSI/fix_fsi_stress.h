@@ -32,7 +32,6 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIStress(class LAMMPS *, int, char **);
   ~FixFSIStress() override;
-  static FixFSIStress *find(class LAMMPS *);    // null: there is none
   int setmask() override { return FixConst::POST_RUN; }
   void post_run() override;
   void init() override;

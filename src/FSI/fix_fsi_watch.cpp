@@ -122,7 +122,7 @@ void FixFSIWatch::enter(int row, int i, double value, int j)
 // kinetic energy, and what of it is small: that of a hundredth of the speed of waves
 void FixFSIWatch::look_at_particles(double &kinetic, double &little)
 {
-  const PairFSISolidTL *const solid_tl = PairFSISolidTL::find(lmp);
+  const PairFSISolidTL *const solid_tl = first_of(pairs_of<PairFSISolidTL>(lmp));
   std::vector<double> mass(atom->ntypes + 1, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;

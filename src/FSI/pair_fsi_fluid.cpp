@@ -298,7 +298,7 @@ void PairFSIFluid::init_style()
     ghosts = std::max(ghosts, pairs.beyond_lists() + neighbor->skin);
   raised_ghosts = ghosts;
   open_ends = has_open_ends(lmp);
-  fix_stress = FixFSIStress::find(lmp);
+  fix_stress = first_of(fixes_of<FixFSIStress>(lmp));
 }
 
 void PairFSIFluid::find_ratios()

@@ -94,11 +94,6 @@ PairFSISolidTL::~PairFSISolidTL()
   memory->destroy(fsolid);    // the reference stays with its atoms, for the next pair_style
 }
 
-PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
-{
-  return first_of(pairs_of<PairFSISolidTL>(lmp));
-}
-
 void PairFSISolidTL::check_settings()
 {
   laws.choose(law);
@@ -167,7 +162,7 @@ void PairFSISolidTL::make_laws()
   laws.choose(law);
   laws.make(material, smoothed.modulus, plane_stress);
   fix_history = FixFSIHistory::keep(lmp, laws.facts().history, laws.columns(disc->dim));
-  fix_stress = laws.facts().by_rate ? FixFSIStress::find(lmp) : nullptr;
+  fix_stress = laws.facts().by_rate ? first_of(fixes_of<FixFSIStress>(lmp)) : nullptr;
   if (!laws.facts().by_rate) return;
   if (!fix_stress) refuse(error, Refused::LAW_STRESS, laws.facts().name);
   if (fix_stress->plane_stress == plane_stress) return;

@@ -56,7 +56,6 @@ class PairFSISolidTL : public PairFSI {
  public:
   PairFSISolidTL(class LAMMPS *);
   ~PairFSISolidTL() override;
-  static PairFSISolidTL *find(class LAMMPS *);    // null: there is none
   void init_style() override;
   void compute(int, int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
