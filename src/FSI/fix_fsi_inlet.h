@@ -32,7 +32,6 @@ namespace LAMMPS_NS {
 namespace FSI {
   class NumberDensity;
   class OpenEnd;
-  class Record;
 }    // namespace FSI
 
 // An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure

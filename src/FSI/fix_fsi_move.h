@@ -27,11 +27,6 @@ FixStyle(fsi/move,FixFSIMove);
 #include <string>
 
 namespace LAMMPS_NS {
-namespace FSI {
-  struct Discretization;
-  class Keywords;
-  class Values;
-}    // namespace FSI
 
 // Prescribed motion of walls and held solids as a function of time: fix move of LAMMPS for time
 // steps that change, with positions at the middle of the step where fix fsi has its forces.

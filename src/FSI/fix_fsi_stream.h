@@ -28,9 +28,6 @@ FixStyle(fsi/stream,FixFSIStream);
 #include <vector>
 
 namespace LAMMPS_NS {
-namespace FSI {
-  class Values;
-}
 
 // Brings the fluid of a zone to a given velocity, and, where asked, its density to the zone's mean:
 // with one rate for both a sound wave that passes decays without a reflection.

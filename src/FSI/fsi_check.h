@@ -24,7 +24,6 @@
 
 namespace LAMMPS_NS {
 namespace FSI {
-  class Record;
 
   class Check : protected Pointers {
    public:

@@ -23,8 +23,6 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class Fix;
-
 namespace FSI {
 
   // Rigid bodies of fix rigid or rigid/small with particles of walls or solids in them. The fix has

@@ -27,7 +27,6 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   class Fields;
-  class Record;
 
   class NumberDensity : protected Pointers {
    public:
