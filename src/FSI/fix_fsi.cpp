@@ -58,7 +58,6 @@ struct FixFSI::Members {
   StepState step;
   Ledger ledger;
   Ghosts ghosts;
-  Keywords keywords;
   Clock clock;
   Check check;
   Changes changes;
@@ -70,17 +69,16 @@ struct FixFSI::Members {
 
   Members(LAMMPS *lmp, FixFSI &fix) :
       disc(&fix, lmp->atom->ntypes), step(lmp, parts), ghosts(lmp, fix, disc.state, step.profile),
-      keywords(lmp, "fix fsi"), clock(lmp), check(lmp, disc, step, parts), changes(lmp),
-      population(lmp, disc, step), number_density(lmp, disc, step, ghosts, parts),
-      clamps(lmp, disc, step), surface_deficit(lmp, disc, step, ledger, number_density),
-      frame(lmp, step.walls)
+      clock(lmp), check(lmp, disc, step, parts), changes(lmp), population(lmp, disc, step),
+      number_density(lmp, disc, step, ghosts, parts), clamps(lmp, disc, step),
+      surface_deficit(lmp, disc, step, ledger, number_density), frame(lmp, step.walls)
   {
   }
 };
 
 // clang-format off
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), members(new Members(lmp, *this)), parts(members->parts),
+    FixFields(lmp, narg, arg, "fix fsi"), members(new Members(lmp, *this)), parts(members->parts),
     disc(members->disc), step(members->step), ledger(members->ledger), ghosts(members->ghosts),
     clock(members->clock), check(members->check), changes(members->changes),
     population(members->population), number_density(members->number_density),
@@ -94,7 +92,6 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
       "masses of particles and bonds of total-Lagrangian solids are still those of the old one",
       *const of_mode =
       "continuity and ratio go on from the density that there is, summation makes it anew";
-  Keywords &keywords = members->keywords;
   const auto positive = Range::above(0.0), ratios = Range::between(0.9, 4.0);
   keywords.argument("particle spacing").number(disc.dx, 0.0, positive).kept(kept);
   keywords.argument("kernel").choice(disc.kernel, CUBIC, names).changes(of_kernel);
@@ -121,7 +118,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     disc.sight = std::make_shared<Sight>(lmp, disc, step.walls, disc.thin);
 
   nevery = 1;
-  time_integrate = force_reneighbor = create_attribute = restart_global = 1;
+  time_integrate = force_reneighbor = create_attribute = 1;
   pre_exchange_migrate = 1;
   set_fields();
   register_fields();
@@ -143,8 +140,8 @@ FixFSI::~FixFSI()
 
 Record FixFSI::record(const double *account) const
 {
-  Record record(lmp, "fix fsi");
-  members->keywords.write(record);
+  Record record(lmp, command);
+  keywords.write(record);
   check.write(record);
   step.write(record);
   population.write(record);
@@ -424,12 +421,12 @@ void FixFSI::write_restart(FILE *fp)
 
 void FixFSI::goes_on(const Record &record, const std::string &when)
 {
-  members->keywords.compare(record, when);
+  keywords.compare(record, when);
   check.read(record);
   step.read(record);
   population.read(record);
-  const bool other_kernel = members->keywords.differs(record, "kernel") ||
-      members->keywords.differs(record, "smoothing length over spacing");
+  const bool other_kernel = keywords.differs(record, "kernel") ||
+      keywords.differs(record, "smoothing length over spacing");
   if (other_kernel &&
       (disc.density_fluid == disc.SUMMATION || disc.density_solid == disc.SUMMATION))
     error->all(FLERR,
@@ -444,7 +441,7 @@ void FixFSI::goes_on(const Record &record, const std::string &when)
 
 void FixFSI::restart(char *buf)
 {
-  const Record record(lmp, "fix fsi", buf);
+  const Record record(lmp, command, buf);
   if (record.has("atoms")) changes.in_file = std::stoll(record.value("atoms"));
   changes.check_file();
   goes_on(record, Keywords::OF_RESTART);

@@ -17,7 +17,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_changes.h"
-#include "fsi_record.h"
 #include "modify.h"
 
 #include <algorithm>
@@ -36,11 +35,10 @@ static std::string spaced(std::string word)
 }
 
 FixFSIHistory::FixFSIHistory(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), of(nullptr), name(narg == 5 ? spaced(arg[4]) : ""),
-    columns(narg == 5 ? atoi(arg[3]) : 0)
+    FixFields(lmp, narg, arg, "fix FSI_HISTORY"), of(nullptr),
+    name(narg == 5 ? spaced(arg[4]) : ""), columns(narg == 5 ? atoi(arg[3]) : 0)
 {
   if (columns < 1) error->all(FLERR, "Fix FSI_HISTORY is made by pair_style fsi/solid/tl alone");
-  restart_global = 1;
   fields.set(name, Fields::RESTART, true, of, columns);
   register_fields();
 }
@@ -66,16 +64,4 @@ FixFSIHistory *FixFSIHistory::keep(LAMMPS *lmp, std::string_view name, int colum
   std::replace(word.begin(), word.end(), ' ', '_');
   return dynamic_cast<FixFSIHistory *>(
       modify->add_fix(fmt::format("{} all FSI_HISTORY {} {}", ID, columns, word)));
-}
-
-void FixFSIHistory::write_restart(FILE *fp)
-{
-  Record record(lmp, "fix FSI_HISTORY");
-  fields.write(record);
-  record.write(fp);
-}
-
-void FixFSIHistory::restart(char *buf)
-{
-  fields.read(Record(lmp, "fix FSI_HISTORY", buf));
 }

@@ -36,8 +36,6 @@ class FixFSIHistory : public FSI::FixFields {
   FixFSIHistory(class LAMMPS *, int, char **);
   ~FixFSIHistory() override;
   int setmask() override { return 0; }
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
   // that of this name (empty: none) and so many numbers of each particle; what there was of another
   // is gone. All ranks together

@@ -48,8 +48,8 @@ struct FixFSIInlet::Members {
 };
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), members(new Members(lmp, this)), end(members->end),
-    keywords(lmp, end.command)
+    FixFields(lmp, narg, arg, std::string("fix ") + arg[2]), members(new Members(lmp, this)),
+    end(members->end)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", end.label);
   if (narg < 5) utils::missing_cmd_args(FLERR, end.command, error);
@@ -82,7 +82,6 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
-  restart_global = 1;
   members->buffer.set_fields(fields);
   register_fields();
   name = fmt::format("{} {} {} {} {}", style, id, face, end.position, given_length);

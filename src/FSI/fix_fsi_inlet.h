@@ -65,7 +65,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   struct Members;
   const std::unique_ptr<Members> members;
   FSI::OpenEnd &end;
-  FSI::Keywords keywords;
   std::string name;    // of what another one goes on with
   double given_length;
   bool driven = false;    // has an open end of the scene a given velocity?

@@ -41,7 +41,7 @@ static const std::vector<std::string> MOTIONS = {"linear", "wiggle", "rotate", "
 static constexpr double FREE = HUGE_VAL;    // stands for NULL
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{},
+    FixFields(lmp, narg, arg, "fix fsi/move"), rate{}, point{}, axis{}, omega(0.0), driven{},
     given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), last{}, origin(now()),
     original(nullptr), begun(false)
 {
@@ -57,7 +57,7 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
   if (domain->dimension == 2 && (rate[2] != 0.0 || (motion == VARIABLE && sets_velocity(2))))
     error->all(FLERR, "Fix fsi/move {} cannot move along z in 2D", *found);
 
-  time_integrate = time_depend = restart_global = 1;
+  time_integrate = time_depend = 1;
   fields.set("place before the motion", Fields::RESTART, true, original, 3);
   register_fields();
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], original[i]);
@@ -369,7 +369,7 @@ std::string FixFSIMove::text() const
 
 void FixFSIMove::write_restart(FILE *fp)
 {
-  Record record(lmp, "fix fsi/move");
+  Record record(lmp, command);
   record.add("motion", text());
   record.add("origin", std::vector<double>{origin});
   fields.write(record);
@@ -379,7 +379,7 @@ void FixFSIMove::write_restart(FILE *fp)
 // another motion begins here
 void FixFSIMove::restart(char *buf)
 {
-  const Record record(lmp, "fix fsi/move", buf);
+  const Record record(lmp, command, buf);
   begun = !record.has("motion") || record.value("motion") == text();
   if (begun) {
     origin = record.numbers("origin")[0];

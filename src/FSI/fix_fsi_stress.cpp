@@ -22,7 +22,6 @@
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
-#include "fsi_record.h"
 #include "fsi_refusals.h"
 #include "fsi_solid_laws.h"
 #include "math_extra.h"
@@ -36,7 +35,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
+    FixFields(lmp, narg, arg, "fix fsi/stress"), stress(nullptr), hourglass(nullptr),
     ns(domain->dimension == 2 ? 3 : 6), start(nullptr), strain(nullptr), left(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
@@ -50,7 +49,6 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   keywords.parse(narg - 3, arg + 3);
   if (plane_stress && domain->dimension == 3) refuse(error, Refused::PLANE_STRESS_3D);
   if (plastic && plane_stress) refuse(error, Refused::PLASTIC_PLANE);
-  restart_global = 1;
   choose_fields();
   register_fields();
 }
@@ -207,19 +205,4 @@ void FixFSIStress::find_idle(const Census &all, const Idle &nothing) const
     nothing("Fix fsi/stress", "no solid is hypoelastic");
   else if (all.solids == 0)
     nothing("Fix fsi/stress", "no particle is a solid");
-}
-
-void FixFSIStress::write_restart(FILE *fp)
-{
-  Record record(lmp, "fix fsi/stress");
-  keywords.write(record);
-  fields.write(record);
-  record.write(fp);
-}
-
-void FixFSIStress::restart(char *buf)
-{
-  const Record record(lmp, "fix fsi/stress", buf);
-  keywords.compare(record);
-  fields.read(record);
 }

@@ -35,8 +35,6 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   int setmask() override { return FixConst::POST_RUN; }
   void post_run() override;
   void init() override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
   FSI::Facts facts() const override { return FSI::only(&FSI::Facts::keeps_solids); }
   std::vector<Effect> effects() const override;
   void find_idle(const Census &, const Idle &) const override;
@@ -64,7 +62,6 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   double shear_energy(int i, double shear) const;    // of atom i with this shear modulus
 
  private:
-  FSI::Keywords keywords;
   static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a
                                                  // run began
   int ns;                                        // components of the deviator

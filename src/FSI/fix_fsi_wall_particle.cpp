@@ -46,7 +46,7 @@ static constexpr double AUTO = -1.0;
 enum { AS_PRESET, MEAN, LINEAR };    // pressure
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), swaps(new Swaps(lmp))
+    FixFields(lmp, narg, arg, "fix fsi/wall/particle"), swaps(new Swaps(lmp))
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -57,7 +57,6 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   size_vector = 3;
   extscalar = extvector = 1;
   global_freq = 1;
-  restart_global = 1;
   fields.set("velocity of the last step", Fields::RESTART, true, before, 4);
   register_fields();
   take_over(id);
@@ -406,21 +405,6 @@ double FixFSIWallParticle::compute_scalar()
         counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
     });
   return sum_of(counted, world);
-}
-
-void FixFSIWallParticle::write_restart(FILE *fp)
-{
-  Record record(lmp, "fix fsi/wall/particle");
-  keywords.write(record);
-  fields.write(record);
-  record.write(fp);
-}
-
-void FixFSIWallParticle::restart(char *buf)
-{
-  const Record record(lmp, "fix fsi/wall/particle", buf);
-  keywords.compare(record);
-  fields.read(record);
 }
 
 double FixFSIWallParticle::memory_usage()

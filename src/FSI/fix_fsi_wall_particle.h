@@ -47,8 +47,6 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   double memory_usage() override;
 
   FSI::Facts facts() const override { return FSI::only(&FSI::Facts::particle_walls); }
-  void write_restart(FILE *) override;
-  void restart(char *) override;
 
   int slip, pressure;    // how pressure is extrapolated
   void set_fields(FSI::Discretization &) override;
@@ -56,7 +54,6 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
                                             // which forces are computed
 
  private:
-  FSI::Keywords keywords;
   double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0:
                    // as the fluid has tension or not
   bool linear = false;           // extrapolates with the gradient, not a mean

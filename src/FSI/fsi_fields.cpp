@@ -275,6 +275,12 @@ const double *FSI::restart_values(const double *extra, int nth)
    a fix with fields
 ------------------------------------------------------------------------- */
 
+FixFields::FixFields(LAMMPS *lmp, int narg, char **arg, const std::string &command) :
+    Fix(lmp, narg, arg), command(command), keywords(lmp, command), fields(lmp)
+{
+  restart_global = 1;
+}
+
 FixFields::~FixFields()
 {
   if (!modify->get_fix_by_id(id)) return;
@@ -294,6 +300,21 @@ void FixFields::register_fields()
     restarts = true;
     restart_peratom = 1;
   }
+}
+
+void FixFields::write_restart(FILE *fp)
+{
+  Record record(lmp, command);
+  keywords.write(record);
+  fields.write(record);
+  record.write(fp);
+}
+
+void FixFields::restart(char *buf)
+{
+  const Record record(lmp, command, buf);
+  keywords.compare(record);
+  fields.read(record);
 }
 
 void FixFields::hand_on(const std::string &name, Record record)

@@ -18,6 +18,7 @@
 #define LMP_FSI_FIELDS_H
 
 #include "fix.h"
+#include "fsi_keywords.h"
 #include "fsi_lammps_access.h"
 #include "fsi_material.h"
 
@@ -132,11 +133,15 @@ namespace FSI {
     template <class Visit> void visit(int i, Visit) const;
   };
 
-  // A fix with fields, which may send messages.
+  // A fix with fields, which may send messages. A restart file has its keywords, if it has some, and
+  // says what of each atom is whose.
   class FixFields : public Fix {
    public:
-    FixFields(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), fields(lmp) {}
+    // command: as a user writes it, fix fsi/stress
+    FixFields(LAMMPS *, int narg, char **arg, const std::string &command);
     ~FixFields() override;
+    void write_restart(FILE *) override;
+    void restart(char *) override;
     void grow_arrays(int nmax) override { fields.grow_lasting(nmax); }
     void copy_arrays(int i, int j, int) override { fields.copy(i, j); }
     void set_arrays(int i) override { fields.begin(i); }
@@ -162,6 +167,8 @@ namespace FSI {
     double memory_usage() override { return fields.memory_usage(); }
 
    protected:
+    const std::string command;
+    Keywords keywords;
     Fields fields;
     const Message *sent = nullptr;    // of the exchange that goes on, by LAMMPS
     // when those that last are set: in the constructor, and again whenever they may have changed
