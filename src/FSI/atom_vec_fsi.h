@@ -52,11 +52,8 @@ class AtomVecFSI : virtual public AtomVec {
 
   // lines of a material file that command fsi/material has given, by name
   std::map<std::string, std::string> materials;
-  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds
-  // of solids are still of its spacing and kernel
-  std::unique_ptr<FSI::Record> of_fix_fsi;
-  // until the next run: what it, and those of FixFields::hand_on() by their names, had of each
-  // particle (Fields::pack_all), and their record
+  // until the next run: what fixes that are gone had of each particle (Fields::pack_all), and their
+  // record, by the names that they gave (FixFields::hand_on)
   struct Kept {
     std::shared_ptr<const FSI::Record> record;
     std::vector<double> rows;

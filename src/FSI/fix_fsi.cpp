@@ -122,10 +122,10 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   pre_exchange_migrate = 1;
   set_fields();
   register_fields();
-  auto *const atoms = AtomVecFSI::of(atom);
-  if (!atoms->of_fix_fsi || !changes.any_mass()) return;
-  goes_on(*atoms->of_fix_fsi, "in the last run");
-  fields.unpack_all(atoms->of_fixes[""].rows);
+  const auto &last = AtomVecFSI::of(atom)->of_fixes[command];
+  if (!last.record || !changes.any_mass()) return;
+  goes_on(*last.record, "in the last run");
+  fields.unpack_all(last.rows);
 }
 // clang-format on
 
@@ -133,12 +133,13 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 FixFSI::~FixFSI()
 {
   if (parts.empty()) return;
-  auto *const atoms = AtomVecFSI::of(atom);
-  atoms->of_fix_fsi = std::make_unique<Record>(record(ledger.energy_out));
-  atoms->of_fixes[""].rows = fields.pack_all();
+  Record now = record();
+  const double *const account = ledger.energy_out;
+  if (ledger.kept) now.add("ledger", std::vector<double>(account, account + Ledger::NTERM));
+  hand_on(command, now);
 }
 
-Record FixFSI::record(const double *account) const
+Record FixFSI::record() const
 {
   Record record(lmp, command);
   keywords.write(record);
@@ -146,8 +147,6 @@ Record FixFSI::record(const double *account) const
   step.write(record);
   population.write(record);
   members->surface_deficit.write(record);
-  fields.write(record);
-  if (ledger.kept) record.add("ledger", std::vector<double>(account, account + Ledger::NTERM));
   return record;
 }
 
@@ -413,7 +412,9 @@ void FixFSI::write_restart(FILE *fp)
 {
   double all[Ledger::NTERM];
   MPI_Allreduce(ledger.energy_out, all, Ledger::NTERM, MPI_DOUBLE, MPI_SUM, world);
-  Record record = this->record(all);
+  Record record = this->record();
+  fields.write(record);
+  if (ledger.kept) record.add("ledger", std::vector<double>(all, all + Ledger::NTERM));
   clock.write(record);
   record.add("atoms", std::to_string(count_of(atom->nlocal, world)));
   record.write(fp);

@@ -98,7 +98,7 @@ class FixFSI : public FSI::FixFields {
   std::string announced;    // the list of effects as last printed
   void set_fields();
   void find_parts();
-  FSI::Record record(const double *account) const;    // of the command, for the next one
+  FSI::Record record() const;    // of the command, for the next one
   void goes_on(const FSI::Record &, const std::string &when);
 
   // ghosts get density, number density where in use, what parts of the step add; back come the
