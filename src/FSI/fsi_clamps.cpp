@@ -36,9 +36,10 @@ using namespace FSI;
 void Clamps::find()
 {
   bodies.clear();
+  number.clear();
+  fixes.clear();
   elastic = false;
-  fixes = rigid_bodies(lmp);
-  for (const auto &rigid : fixes) {
+  for (const auto &rigid : rigid_bodies(lmp)) {
     const Fix *const fix = rigid->fix;
     std::set<tagint> local;
     bool solids = false;
@@ -57,12 +58,14 @@ void Clamps::find()
       refuse(error, Refused::RIGID_STYLES, fix->id, fix->style, expected);
     if (ids.empty() || !expected.empty()) continue;
     refuse_new_ids(*rigid);
+    fixes.push_back(rigid);
     elastic = elastic || in_substeps;
     for (const tagint id : ids) {
       Body body = {};
       body.fix = rigid.get();
       body.id = id;
       for (int d = 0; d < 6; d++) body.free[d] = rigid->free(id, d);
+      number[{rigid.get(), id}] = (int) bodies.size();
       bodies.push_back(body);
     }
   }
@@ -71,9 +74,15 @@ void Clamps::find()
 
 bool Clamps::known(const Fix *fix) const
 {
-  return std::any_of(bodies.begin(), bodies.end(), [=](const Body &b) {
-    return b.fix->fix == fix;
+  return std::any_of(fixes.begin(), fixes.end(), [=](const auto &rigid) {
+    return rigid->fix == fix;
   });
+}
+
+const Clamps::Body *Clamps::find(const RigidBodies &rigid, tagint id) const
+{
+  const auto at = number.find({&rigid, id});
+  return at == number.end() ? nullptr : &bodies[at->second];
 }
 
 // for its bodies to be moved here; empty: they are
@@ -103,55 +112,31 @@ void Clamps::refuse_new_ids(const RigidBodies &rigid) const
 void Clamps::find_members()
 {
   members.clear();
-  of_fixes([this](size_t first, size_t last) {
-    const auto of = places_by_id(first, last);
-    for (int i = 0; i < atom->nlocal; i++) {
-      const auto at = of.find(bodies[first].fix->id_of(i));
-      if (at != of.end()) members.push_back({i, (int) at->second});
-    }
-  });
-}
-
-// calls use(first, last) for the bodies of each fix
-template <class Use> void Clamps::of_fixes(Use use) const
-{
-  for (size_t first = 0, last; first < bodies.size(); first = last) {
-    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix;) last++;
-    use(first, last);
-  }
-}
-
-// which of those it is that a fix knows by this
-std::unordered_map<tagint, size_t> Clamps::places_by_id(size_t first, size_t last) const
-{
-  std::unordered_map<tagint, size_t> of;
-  for (size_t k = first; k < last; k++) of[bodies[k].id] = k;
-  return of;
+  for (const auto &rigid : fixes)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (const Body *const b = find(*rigid, rigid->id_of(i)))
+        members.push_back({i, (int) (b - bodies.data())});
 }
 
 void Clamps::store() const
 {
-  of_fixes([this](size_t first, size_t last) {
-    const auto of = places_by_id(first, last);
-    bodies[first].fix->store([&](tagint id) -> const BodyNow * {
-      const auto at = of.find(id);
-      return at == of.end() ? nullptr : &bodies[at->second];
+  for (const auto &rigid : fixes)
+    rigid->store([&](tagint id) {
+      return find(*rigid, id);
     });
-  });
 }
 
 // calls use(body, its state) for all. Those of fix rigid/small with particles of walls or solids,
 // few among many, go to each rank
 template <class Use> void Clamps::with_states(Use use)
 {
-  of_fixes([&](size_t first, size_t last) {
-    const auto of = places_by_id(first, last);
+  for (const auto &rigid : fixes) {
     std::vector<BodyState> states;
-    for (const BodyState &s : bodies[first].fix->states())
-      if (of.count(s.id)) states.push_back(s);
-    if (bodies[first].fix->small) states = gather(states, world);
-    for (const BodyState &s : states) use(bodies[of.at(s.id)], s);
-  });
+    for (const BodyState &s : rigid->states())
+      if (find(*rigid, s.id)) states.push_back(s);
+    if (rigid->small) states = gather(states, world);
+    for (const BodyState &s : states) use(bodies[number[{rigid.get(), s.id}]], s);
+  }
 }
 
 void Clamps::follow(Body &b) const

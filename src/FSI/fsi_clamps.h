@@ -18,8 +18,9 @@
 #include "fsi_part.h"
 #include "pointers.h"
 
+#include <map>
 #include <string>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -64,8 +65,9 @@ namespace FSI {
     struct Member {
       int i, body;    // local atom
     };
-    std::vector<std::shared_ptr<RigidBodies>> fixes;
+    std::vector<std::shared_ptr<RigidBodies>> fixes;    // of these bodies
     std::vector<Body> bodies;
+    std::map<std::pair<const RigidBodies *, tagint>, int> number;    // of a body, by fix and ID
     std::vector<Member> members, clamps;    // all particles; those of solids
     std::vector<char> clamp;                // is an atom one?
     std::vector<double> impulse;            // of clamps, over the last sub-steps' length
@@ -83,8 +85,7 @@ namespace FSI {
     void place(const std::vector<Member> &) const;
     void sum(const std::vector<Member> &, const double *const *f, bool whole);
     void add_own(const Body &, double *force_and_torque) const;
-    template <class Use> void of_fixes(Use) const;
-    std::unordered_map<tagint, size_t> places_by_id(size_t first, size_t last) const;
+    const Body *find(const RigidBodies &, tagint id) const;    // null: it is none of these
     template <class Use> void with_states(Use);
     void store() const;
     void to_start();
