@@ -50,23 +50,18 @@ static constexpr double SOFT = 0.03;
 
 // Is no number of these larger than that? A comparison that NaN fails. In a form that compilers
 // turn into vector instructions.
-static FSI_INLINE bool none_above(int n, const double *a, double most)
-{
-  int64_t above = 0;
-  const int64_t yes = 0, no = -1;    // as wide as a number
-  for (int k = 0; k < n; k++) above |= std::abs(a[k]) <= most ? yes : no;
-  return !above;
-}
-
-FSI_TARGET static bool all_below_packed(int n, const double *a, double most)
-{
-  return none_above(n, a, most);
-}
-
 static bool all_below(int n, const double *a, double most)
 {
   static const bool packed = have_packs();
-  return packed ? all_below_packed(n, a, most) : none_above(n, a, most);
+  int64_t any = 0;
+  const auto look = [=, &any](auto) FSI_INLINE_LAMBDA {
+    int64_t above = 0;
+    const int64_t yes = 0, no = -1;    // as wide as a number
+    for (int k = 0; k < n; k++) above |= std::abs(a[k]) <= most ? yes : no;
+    any = above;
+  };
+  packed ? run_loop<Pack>(look) : run_loop<double>(look);
+  return !any;
 }
 
 Check::Check(LAMMPS *lmp, const Discretization &disc, const StepState &step,

@@ -179,7 +179,6 @@ namespace FSI {
     }
 
    private:
-    const bool packs = have_packs();
     // offsets over the scale along each axis, weights, what is found: one after the other, filled
     // up to whole packs with neighbors that weigh nothing
     mutable std::vector<double> columns, distances;    // of lattice_axes()
@@ -297,11 +296,6 @@ namespace FSI {
       gradient_basis<D, TERMS>(x, phi);
     }
 
-    template <class Loop> void run(Loop loop) const
-    {
-      packs ? run_loop<Pack>(loop) : run_loop<double>(loop);
-    }
-
     template <int TERMS>
     void solve_in_axes(int n, const double *dX, const double *w, Fit<TERMS> &fit) const
     {
@@ -309,7 +303,7 @@ namespace FSI {
       sort_axes(n, dX, w, fit.axes);
       const int size = columns.size() / (D + 1 + D);
       const double *const column = columns.data();
-      run([&](auto number) FSI_INLINE_LAMBDA {
+      run_widest([&](auto number) FSI_INLINE_LAMBDA {
         using T = decltype(number);
         T sum[packed_size(TERMS)], phi[TERMS];
         for (auto &s : sum) s = T(0.0);
@@ -354,7 +348,7 @@ namespace FSI {
           for (int k = 0; k < TERMS; k++) C[a][k] += fit.axes[c][a] * fit.C[c * TERMS + k] * inv;
       const int size = columns.size() / (D + 1 + D);
       double *const column = columns.data();
-      run([&](auto number) FSI_INLINE_LAMBDA {
+      run_widest([&](auto number) FSI_INLINE_LAMBDA {
         using T = decltype(number);
         T phi[TERMS];
         for (int j = 0; j < n; j += Lanes<T>::WIDTH) {

@@ -228,21 +228,10 @@ namespace FSI {
   // Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
   template <class F> void with_kernel(int kind, int dim, double h, F &&f)
   {
-    if (dim == 2) {
-      if (kind == CUBIC)
-        f(Cubic<2>(h));
-      else if (kind == QUINTIC)
-        f(Quintic<2>(h));
-      else
-        f(Wendland<2>(h));
-    } else {
-      if (kind == CUBIC)
-        f(Cubic<3>(h));
-      else if (kind == QUINTIC)
-        f(Quintic<3>(h));
-      else
-        f(Wendland<3>(h));
-    }
+    if (dim == 2)
+      kind == CUBIC ? f(Cubic<2>(h)) : kind == QUINTIC ? f(Quintic<2>(h)) : f(Wendland<2>(h));
+    else
+      kind == CUBIC ? f(Cubic<3>(h)) : kind == QUINTIC ? f(Quintic<3>(h)) : f(Wendland<3>(h));
   }
 
   // sum_j W_ij of a particle inside an infinite square (2D) or simple cubic (3D) lattice of spacing

@@ -444,6 +444,11 @@ namespace FSI {
 #endif
       loop(T());
   }
+  // as many side by side as the processor can have
+  template <class Loop> void run_widest(Loop loop)
+  {
+    have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
+  }
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

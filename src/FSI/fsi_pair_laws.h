@@ -362,9 +362,7 @@ namespace FSI {
     }
     double energy(double rsq, double Ki, double Kj) const
     {
-      if (rsq >= reachsq) return 0.0;
-      const double gap = reach - std::sqrt(rsq);
-      return Ki * Kj / (Ki + Kj) * scale * gap * gap;
+      return stored(rsq, 2.0 * Ki * Kj / (Ki + Kj));
     }
 
     // second derivative of the energy (R - r)^2/2 per particle of a face by the distance of the

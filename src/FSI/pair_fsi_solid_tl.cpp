@@ -385,7 +385,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
         find_volumetric_strains<decltype(number), L, D>(rows, first, last, atom->type,
                                                         points.data(), smoothed);
       };
-      have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
+      run_widest(find);
     });
     reference->swaps.forward<Pair>(step->profile, this, 1);
     for (const auto *set : {&reference->solids, &reference->ghosts})
@@ -400,7 +400,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
                   of_part.energy += smooth_volumetric_strains<decltype(number), L>(
                       rows, first, last, of_all, smoothed, to);
                 };
-                have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
+                run_widest(smooth);
               });
     energy = sums.energy;
     images.for_each([&](int k, int of, const Mirror &, bool) {
@@ -642,7 +642,7 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
             row.volume * law_of[t].template advance<D>(F, factors[t], fix_history->of[row.i]);
       }
     };
-    have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
+    run_widest(loop);
     of_part.energy += dissipated;
   });
   if (ledger->kept) ledger->energy_out[Ledger::INELASTIC] += sums.energy;
@@ -669,7 +669,7 @@ template <int D> void PairFSISolidTL::advance_rates(double dt, double since)
         ledger->energy_out[Ledger::INELASTIC] += work * row.volume * determinant<D>(F);
     }
   };
-  have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
+  run_widest(loop);
 }
 
 void PairFSISolidTL::break_bonds()
