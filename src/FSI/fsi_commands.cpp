@@ -30,8 +30,6 @@
 #include "group.h"
 #include "input.h"
 #include "modify.h"
-#include "neigh_list.h"
-#include "neighbor.h"
 #include "update.h"
 #include "variable.h"
 
@@ -132,40 +130,26 @@ double covered(const double *xi, double a, const double *xj, double b, int dim)
 
 }    // namespace
 
-// of all particles, as between runs there are none
-const NeighList *FSIDisplace::neighbors()
-{
-  neighbor->add_request(this, "fsi/displace", NeighConst::REQ_FULL);
-  lmp->init();    // materials and masses are entered there
-  renew_ghosts(lmp);
-  neighbor->build(1);
-  auto *const list = neighbor->find_list(this);
-  neighbor->build_one(list);
-  return list;
-}
-
 // Of each particle of fluid that a body covers the key, of others NEVER; sum: how many, and their
 // mass. First goes what is covered most and nearest to the body, in spacings, so that none that
 // stays is too near; of the same by place.
 template <class IsFluid, class IsBody>
-std::vector<double> FSIDisplace::find_covered(const Discretization &disc, const NeighList &list,
-                                              IsFluid is_fluid, IsBody is_body, double *sum) const
+std::vector<double> FSIDisplace::find_covered(const Discretization &disc, IsFluid is_fluid,
+                                              IsBody is_body, double *sum) const
 {
   double **const x = atom->x;
   const int *const type = atom->type;
   std::vector<double> key(atom->nlocal, NEVER);
-  for (int ii = 0; ii < list.inum; ii++) {
-    const int i = list.ilist[ii];
+  const Cells bodies(x, atom->nlocal + atom->nghost, disc.dim, disc.largest_cut, is_body);
+  for (int i = 0; i < atom->nlocal; i++) {
     if (!is_fluid(i)) continue;
     const double dx = disc.dx_of(type[i]);
     double part = 0.0, nearest = 4.0 * dx;
-    for (int jj = 0; jj < list.numneigh[i]; jj++) {
-      const int j = list.firstneigh[i][jj] & NEIGHMASK;
-      if (!is_body(j)) continue;
+    bodies.around(x[i], [&](int j, double) {
       part += covered(x[i], dx, x[j], disc.dx_of(type[j]), disc.dim);
       nearest =
           std::min(nearest, std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]));
-    }
+    });
     if (part == 0.0) continue;
     sum[0] += part;
     sum[1] += part * atom->rmass[i];
@@ -180,7 +164,8 @@ void FSIDisplace::command(int narg, char **arg)
   const auto igroup = two_groups(lmp, "displace", "fluid", "body", narg, arg, names);
   const int bit[] = {group->bitmask[igroup[0]], group->bitmask[igroup[1]]};
   const Discretization &disc = FixFSI::find(lmp, "Fsi/displace")->disc;
-  const NeighList *const list = neighbors();
+  lmp->init();    // materials and masses are entered there
+  renew_ghosts(lmp);
   const int *const type = atom->type, *const mask = atom->mask;
   const auto is_fluid = [&](int i) {
     return mask[i] & bit[0] && disc.state[type[i]].species == FLUID;
@@ -196,7 +181,7 @@ void FSIDisplace::command(int narg, char **arg)
                  k == 0 ? "a fluid" : "a body");
 
   double here[3] = {}, all[3];    // particles, mass in whose place the body is; what goes
-  const auto key = find_covered(disc, *list, is_fluid, is_body, here);
+  const auto key = find_covered(disc, is_fluid, is_body, here);
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
 
   const double limit = limit_of(key, std::llround(all[0]), -NEVER, NEVER, world);

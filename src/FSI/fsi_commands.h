@@ -53,10 +53,8 @@ class FSIDisplace : public Command {
   void command(int, char **) override;
 
  private:
-  const class NeighList *neighbors();
   template <class IsFluid, class IsBody>
-  std::vector<double> find_covered(const FSI::Discretization &, const class NeighList &, IsFluid,
-                                   IsBody, double *sum) const;
+  std::vector<double> find_covered(const FSI::Discretization &, IsFluid, IsBody, double *sum) const;
 };
 
 // fsi/run time keyword value ...: runs until that time. Keywords are those of the fix fsi/dt that
