@@ -150,7 +150,7 @@ void FixFSIInlet::init()
                end.name, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0,
                OpenEnd::FAR, update->unit_style, std::sqrt(away / (OpenEnd::FAR * soft.rho0)));
   }
-  members->buffer.init(*disc, *ledger, fix_fsi->population);
+  members->buffer.init(*ledger, fix_fsi->population);
 }
 
 // the buffer is full: plane and length are those of before

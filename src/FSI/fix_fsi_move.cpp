@@ -42,8 +42,8 @@ static constexpr double FREE = HUGE_VAL;    // stands for NULL
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg, "fix fsi/move"), rate{}, point{}, axis{}, omega(0.0), driven{},
-    given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), last{}, origin(now()),
-    original(nullptr), begun(false)
+    given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), last{},
+    origin(Clock::now(update)), original(nullptr), begun(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/move", error);
@@ -135,11 +135,6 @@ bool FixFSIMove::of_atom(int k) const
   return given->source(k) == Values::ATOM || given->source(VELOCITY + k) == Values::ATOM;
 }
 
-double FixFSIMove::now() const
-{
-  return FSI::Clock::now(update);
-}
-
 void FixFSIMove::init()
 {
   const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/move");
@@ -180,7 +175,7 @@ void FixFSIMove::refuse_free(const Discretization &disc, bool substeps) const
 // velocities that the first forces feel
 void FixFSIMove::setup_pre_exchange()
 {
-  if (!begun) origin = now();    // the clock of a restart file is right from init() on
+  if (!begun) origin = Clock::now(update);    // the clock of a restart file is right from init() on
   begun = true;
   go_on_from_here();
   move(START);
@@ -191,7 +186,8 @@ void FixFSIMove::setup_pre_exchange()
 void FixFSIMove::go_on_from_here()
 {
   constexpr double ROUND = 1.0e-6;
-  const double round = ROUND * FixFSI::find(lmp, "Fix fsi/move")->disc.dx, t = now() - origin;
+  const double round = ROUND * FixFSI::find(lmp, "Fix fsi/move")->disc.dx,
+               t = Clock::now(update) - origin;
   if (motion == VARIABLE && (evaluated < 0 || given->of_atoms()))
     given->evaluate(igroup, 0, 2 * VELOCITY);
   if (evaluated < 0) remember();
@@ -301,7 +297,7 @@ void FixFSIMove::where(int i, double t, double *x, double *v) const
 bool FixFSIMove::velocity_at_end(int i, double *v) const
 {
   double x[3];
-  if (motion != VARIABLE) follow(original[i], now() - origin, x, v);
+  if (motion != VARIABLE) follow(original[i], Clock::now(update) - origin, x, v);
   for (int k = 0; k < domain->dimension; k++) {
     if (!sets_velocity(k) || given->source(VELOCITY + k) == Values::ATOM) return false;
     if (motion == VARIABLE) v[k] = given->number(VELOCITY + k);
@@ -315,7 +311,7 @@ void FixFSIMove::move(When when)
 {
   const double dt = update->dt;
   const double back = when == MIDDLE ? 0.5 * dt : when == BACK ? dt : 0.0;
-  const double t = now() - origin - back;
+  const double t = Clock::now(update) - origin - back;
   if (motion == VARIABLE) {
     const double clock = update->atime;
     update->atime -= back;
@@ -398,7 +394,7 @@ void FixFSIMove::restart(char *buf)
 void FixFSIMove::set_arrays(int i)
 {
   domain->unmap(atom->x[i], atom->image[i], original[i]);
-  const double t = now() - origin;
+  const double t = Clock::now(update) - origin;
   if (!(atom->mask[i] & groupbit) || !begun || t == 0.0) return;
   double shift[3] = {0.0, 0.0, 0.0};
   if (motion == VARIABLE) {

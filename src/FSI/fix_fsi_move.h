@@ -74,7 +74,6 @@ class FixFSIMove : public FSI::FixFields, public FSI::Part {
 
   enum When { START, MIDDLE, END, BACK };    // of a run; of a step, from its middle to its start
 
-  double now() const;
   std::string text() const;    // as in the command
   bool sets_velocity(int k) const, of_atom(int k) const;
   void refuse_free(const FSI::Discretization &, bool substeps) const;

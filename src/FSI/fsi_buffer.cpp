@@ -45,9 +45,8 @@ void Buffer::set_fields(Fields &fields)
   fields.set("velocity of the copy", Fields::RESTART, true, follower, 4);
 }
 
-void Buffer::init(const Discretization &disc_in, Ledger &ledger_in, Population &population_in)
+void Buffer::init(Ledger &ledger_in, Population &population_in)
 {
-  disc = &disc_in;
   ledger = &ledger_in;
   population = &population_in;
   warned_of_stranger = warned_of_supply = false;
@@ -71,13 +70,13 @@ void Buffer::check_levels(bool is_empty) const
   };
   const auto all = find_particles(atom, world, is_there),
              finer = find_particles(atom, world, [&](int i) {
-               return disc->level_of[atom->type[i]] > 0 && is_there(i);
+               return end.disc->level_of[atom->type[i]] > 0 && is_there(i);
              });
   if (finer.count > (is_empty ? 0.0 : FEW_FINER * all.count))
     error->all(FLERR,
                "{}: {} particles of fluid finer than dx, {:g}, the first of them atom {}, are "
                "within {:g} of its plane: the fluid that comes and goes is the coarsest",
-               end.name, finer.count, disc->dx, finer.first, length);
+               end.name, finer.count, end.disc->dx, finer.first, length);
 }
 
 void Buffer::populate()
@@ -101,7 +100,7 @@ void Buffer::populate()
   end.find_places();    // of which variables are asked
   end.given.evaluate_for(end.places, 0, 3);
   for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; member(i) && d < disc->dim; d++)
+    for (int d = 0; member(i) && d < end.disc->dim; d++)
       if (end.given.given(d)) atom->v[i][d] = end.value(d, i);
 }
 
@@ -114,14 +113,14 @@ Buffer::Census Buffer::take_census(std::vector<int> &slices, bool &has_some)
     const double s = end.inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
     has_some = true;
-    if (disc->state[atom->type[i]].species == RIGID && s > -length)
+    if (end.disc->state[atom->type[i]].species == RIGID && s > -length)
       (s > 0.0 ? local.walls_ahead : local.walls_behind)++;
     if (!end.is_fluid(i) || !end.in_patch(atom->x[i])) continue;
     if (s > 0.0) {
       local.ahead++;
       continue;
     }
-    (s > -length - 0.5 * disc->dx ? local.behind : local.beyond)++;
+    (s > -length - 0.5 * end.disc->dx ? local.behind : local.beyond)++;
     members[i] = MEMBER;
     const size_t k = slice(-s);
     if (k < slices.size()) slices[k]++;
@@ -163,11 +162,12 @@ void Buffer::check_slices(const std::vector<int> &rank_local) const
     return n < 0.5 * most;
   });
   if (few == all.end() || comm->me) return;
-  const double from = end.position - end.side * (few - all.begin()) * disc->dx;
+  const double from = end.position - end.side * (few - all.begin()) * end.disc->dx;
   error->warning(FLERR,
                  "{}: its buffer has {} particles from {} to {:.10g} and {} elsewhere: what is not "
                  "there will not come in. Fill it to {}, or leave it empty",
-                 end.name, *few, end.at(from), from - end.side * disc->dx, most, end.at(end.end()));
+                 end.name, *few, end.at(from), from - end.side * end.disc->dx, most,
+                 end.at(end.end()));
 }
 
 // Calls visit(particle, offset from x) for those of a list, sorted by the plane's first axis, that
@@ -176,7 +176,7 @@ template <class Visit>
 void Buffer::beside(const std::vector<Particle> &sorted, const double *x, Visit visit) const
 {
   const int a = first_axis(), periodic = domain->periodicity[a];
-  const double reach = OCCUPIED * disc->dx;
+  const double reach = OCCUPIED * end.disc->dx;
   for (int image = -periodic; image <= periodic; image++) {
     const double from = x[a] + image * domain->prd[a] - reach;
     auto p = std::lower_bound(sorted.begin(), sorted.end(), from, [a](const Particle &b, double y) {
@@ -203,8 +203,8 @@ void Buffer::sort_along_plane(std::vector<Particle> &list) const
 // many those are on this rank
 int Buffer::find_last_of_rows()
 {
-  const double at_end = disc->dx - end.length, low = at_end + neighbor->skin,
-               reach = OCCUPIED * disc->dx;
+  const double at_end = end.disc->dx - end.length, low = at_end + neighbor->skin,
+               reach = OCCUPIED * end.disc->dx;
   int missing = 0;
   std::vector<Particle> local, all;
   for (int i = 0; i < atom->nlocal; i++)
@@ -242,7 +242,7 @@ std::vector<Particle> Buffer::go_on_behind() const
                "it: fill what is between, or the buffer, to {}",
                end.name, group->names[end.igroup], end.at(end.position), end.at(end.end()));
   std::vector<Particle> copies;
-  const double period = disc->dx * full;
+  const double period = end.disc->dx * full;
   end.for_fluid(0.0, full ? end.length : 0.0, [&](int i, double s) {
     if (slice(s) >= full) return;
     Particle c = population->copy_of(i);
@@ -277,10 +277,10 @@ int Buffer::slices_before_bodies() const
     if (slice(s) == 0) local.push_back(along(atom->x[i]));
   });
   if (end.ranks != MPI_COMM_NULL) columns = gather(local, end.ranks);
-  const double dx = disc->dx;
+  const double dx = end.disc->dx;
   int limit = number_of_slices(), hole = 0;
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &state = disc->state[atom->type[i]];
+    const State &state = end.disc->state[atom->type[i]];
     const double s = end.inside(atom->x[i]);
     if (s <= 0.0 || s >= end.length || state.species == FLUID || state.species == NONE) continue;
     const Column here = along(atom->x[i]);
@@ -290,8 +290,8 @@ int Buffer::slices_before_bodies() const
       below = below || c[0] < here[0];
       above = above || c[0] > here[0];
       if (std::fabs(c[0] - here[0]) < 0.5 * dx)
-        limit =
-            std::min(limit, static_cast<int>((s - 0.5 * disc->dx_of(atom->type[i])) / dx + 1.0e-6));
+        limit = std::min(
+            limit, static_cast<int>((s - 0.5 * end.disc->dx_of(atom->type[i])) / dx + 1.0e-6));
     }
     if (state.species == SOLID && slice(s) == 0 && below && above && !hole++)
       error->warning(FLERR,
@@ -314,12 +314,12 @@ std::vector<int> Buffer::find_occupied(std::vector<Particle> &copies, bool at_st
   }
 
   sort_along_plane(copies);
-  const double reach = OCCUPIED * disc->dx;
+  const double reach = OCCUPIED * end.disc->dx;
   std::vector<int> is_occupied(copies.size(), 0), occupied(copies.size());
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], s = end.inside(x);
     if (s < low - reach || s > high + reach) continue;
-    const int species = disc->state[atom->type[i]].species;
+    const int species = end.disc->state[atom->type[i]].species;
     if (species != FLUID && !at_start) continue;    // as near as its parent is in front
     beside(copies, x, [&](const Particle &c, double *d) {
       if (MathExtra::lensq3(d) >= reach * reach) return;
@@ -423,7 +423,7 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
   if (end.ranks == MPI_COMM_NULL) return;
   auto all = gather(gone, end.ranks);
   sort_along_plane(all);
-  const double reach = OCCUPIED * disc->dx, far = 2.0 * disc->dx;
+  const double reach = OCCUPIED * end.disc->dx, far = 2.0 * end.disc->dx;
   std::vector<double> local(all.size(), far), nearest(all.size());
   // visit(distance along the axis, to which of them) for a particle that is before one of them
   const auto before = [&](int i, const auto &visit) {
@@ -450,7 +450,7 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
 void Buffer::check_stranger(int i)
 {
   const double *const x = atom->x[i];
-  const int species = disc->state[atom->type[i]].species, axis = end.axis;
+  const int species = end.disc->state[atom->type[i]].species, axis = end.axis;
   if (!end.in_patch(x)) return;
   if (species == SOLID && end.inside(x) > -end.length)
     error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone",
@@ -480,7 +480,7 @@ void Buffer::check_stranger(int i)
 // behind those that pass the plane would bring each gap again and again.)
 void Buffer::follow(int i, double s, double column)
 {
-  const double spacing = column * disc->dx * disc->state[atom->type[i]].rho0 / atom->rho[i];
+  const double spacing = column * end.disc->dx * end.disc->state[atom->type[i]].rho0 / atom->rho[i];
   const bool at_end = s <= spacing - end.length, is_next = member(i) == NEXT_OF_ROW;
   if (at_end && (is_next || member(i) == MEMBER)) members[i] = LAST;
   if (at_end || !(member(i) == LAST || (is_next && end.side * atom->v[i][end.axis] > 0.0))) return;
@@ -495,7 +495,7 @@ void Buffer::follow(int i, double s, double column)
 void Buffer::start_step()
 {
   for (const auto &place : end.places)
-    for (int d = 0; member(place.i) == FOLLOWED && d < disc->dim; d++)
+    for (int d = 0; member(place.i) == FOLLOWED && d < end.disc->dim; d++)
       behind[place.i][d] += 0.5 * update->dt * follower[place.i][d];
 }
 
@@ -533,7 +533,7 @@ void Buffer::prescribe(double wave)
     if (place.inside > 0.0) continue;
     const double m = atom->rmass[i];
     double *const f = atom->f[i], *const v = atom->v[i];
-    for (int d = 0; d < disc->dim; d++) {
+    for (int d = 0; d < end.disc->dim; d++) {
       const double more = d == end.axis ? end.side * wave : 0.0;
       const double u = !wants_velocity ? end.value(d, i) + more
           : !place.known               ? v[d]

@@ -24,11 +24,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
-{
-  for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
-}
-
 // fastest wave seen from the lattice, and largest squared acceleration, with whose they are
 struct Limits::OfType {
   bool present = false;
@@ -80,7 +75,7 @@ void Limits::find(const Discretization &disc, const double *viscosity, int group
   const bool implicit =
       of_fluids.implicit_viscosity && (substeps || of_solids.style == Facts::NONE);
   for (auto &row : culprit) row[0] = row[1] = 0;
-  for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
+  std::fill_n(limit[0], 2 * NLIMIT, UNLIMITED);
   const auto lower = [](double &limit, double value, tagint *particle = nullptr, tagint tag = 0) {
     if (!(value < limit)) return;
     limit = value;
@@ -92,35 +87,33 @@ void Limits::find(const Discretization &disc, const double *viscosity, int group
     const State &s = disc.state[t];
     const bool fluid = s.species == FLUID;
     const int in_sub = substeps && !fluid;
-    double *const limit = in_sub ? sub : step;
+    double *const of_this = limit[in_sub];
     const double factor = fluid ? of_fluid : of_solid, h = disc.h_of(t);
     // held solids may be walls, without a style
     const double alpha = (fluid ? of_fluids : of_solids).alpha;
     if (found.fastest > 0.0)
       lower(step[SOUND], of_fluid * safe[SOUND] * h / found.fastest, &culprit[0][0], found.fast);
     if (found.asq > 0.0)
-      lower(limit[ACCELERATION], factor * safe[ACCELERATION] * std::sqrt(h / std::sqrt(found.asq)),
-            &culprit[in_sub][1], found.pushed);
-    if (!fluid) lower(limit[ELASTIC], factor * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
+      lower(of_this[ACCELERATION],
+            factor * safe[ACCELERATION] * std::sqrt(h / std::sqrt(found.asq)), &culprit[in_sub][1],
+            found.pushed);
+    if (!fluid) lower(of_this[ELASTIC], factor * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
     if (alpha > 0.0)
-      lower(limit[ARTIFICIAL], factor * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
+      lower(of_this[ARTIFICIAL], factor * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
     if (fluid && found.viscosity > 0.0 && of_fluids.laminar && !implicit)
-      lower(limit[LAMINAR], factor * safe[LAMINAR] * h * h * s.rho0 / found.viscosity);
+      lower(of_this[LAMINAR], factor * safe[LAMINAR] * h * h * s.rho0 / found.viscosity);
   }
 }
 
 void Limits::reduce()
 {
-  double local[2][NLIMIT], all[2][NLIMIT];
-  std::copy_n(step, NLIMIT, local[0]);
-  std::copy_n(sub, NLIMIT, local[1]);
-  MPI_Allreduce(&local[0][0], &all[0][0], 2 * NLIMIT, MPI_DOUBLE, MPI_MIN, world);
+  double local[2][NLIMIT];
   tagint tags[2][2];
+  std::copy_n(limit[0], 2 * NLIMIT, local[0]);
+  MPI_Allreduce(local, limit, 2 * NLIMIT, MPI_DOUBLE, MPI_MIN, world);
   for (int k = 0; k < 2; k++) {
-    tags[k][0] = local[k][SOUND] == all[k][SOUND] ? culprit[k][0] : 0;
-    tags[k][1] = local[k][ACCELERATION] == all[k][ACCELERATION] ? culprit[k][1] : 0;
+    tags[k][0] = local[k][SOUND] == limit[k][SOUND] ? culprit[k][0] : 0;
+    tags[k][1] = local[k][ACCELERATION] == limit[k][ACCELERATION] ? culprit[k][1] : 0;
   }
-  MPI_Allreduce(&tags[0][0], &culprit[0][0], 4, MPI_LMP_TAGINT, MPI_MAX, world);
-  std::copy_n(all[0], NLIMIT, step);
-  std::copy_n(all[1], NLIMIT, sub);
+  MPI_Allreduce(tags, culprit, 4, MPI_LMP_TAGINT, MPI_MAX, world);
 }

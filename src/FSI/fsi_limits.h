@@ -38,10 +38,11 @@ namespace FSI {
     static constexpr double safe[NLIMIT] = {0.25, 0.25, 0.4, 0.0625, 0.25};
     static constexpr double FLUID_FACTOR = 2.0, SOLID_FACTOR = 1.0;
 
-    double step[NLIMIT], sub[NLIMIT];    // of the step, and of a sub-step of what takes sub-steps
-    tagint culprit[2][2];    // particle behind sound and acceleration, of step and sub-step
+    double limit[2][NLIMIT];    // of the step, and of a sub-step of what takes sub-steps
+    double *const step = limit[0], *const sub = limit[1];
+    tagint culprit[2][2] = {};    // particle behind sound and acceleration, of step and sub-step
 
-    Limits(class LAMMPS *);
+    explicit Limits(class LAMMPS *lmp) : Pointers(lmp) {}
     // of this rank's particles of a group, times a factor of fluids and one of solids
     void find(const Discretization &, const double *viscosity, int groupbit, bool substeps,
               double of_fluid = FLUID_FACTOR, double of_solid = SOLID_FACTOR);

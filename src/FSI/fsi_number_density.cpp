@@ -118,9 +118,9 @@ static constexpr double ROUND = 1.0e-6;    // missing parts of a lattice's sum t
 static constexpr double EDGE = 100.0;
 
 // sums over the planes of a lattice that are missing
-DeficitOfPlane::DeficitOfPlane(int kernel, int dim, double h_over_dx)
+void SurfaceDeficit::find_layers()
 {
-  with_kernel(kernel, dim, h_over_dx, [this](const auto &k) {
+  with_kernel(disc.kernel, disc.dim, disc.h / disc.dx, [this](const auto &k) {
     constexpr int D = std::decay_t<decltype(k)>::DIM;
     const double psi = lattice_number_density(k, 1.0);
     const int n = static_cast<int>(k.cut) + 1;
@@ -142,8 +142,8 @@ DeficitOfPlane::DeficitOfPlane(int kernel, int dim, double h_over_dx)
   });
 }
 
-// beyond the first layer, at edges, as between the last two
-double DeficitOfPlane::operator()(double s) const
+// linear between layers; beyond the first one, at edges, as between the last two
+double SurfaceDeficit::of_plane(double s) const
 {
   size_t k = 1;
   while (k + 1 < layers.size() && s > layers[k].first) k++;
@@ -159,7 +159,7 @@ void SurfaceDeficit::set_array(Fields &fields)
   };
   fields.set("room at the surface", Fields::RESTART,
              disc.density_fluid == Discretization::CONTINUITY && wanted(), deficit, 2);
-  if (deficit) of_plane = DeficitOfPlane(disc.kernel, disc.dim, disc.h / disc.dx);
+  if (deficit) find_layers();
 }
 
 void SurfaceDeficit::write(Record &record) const

@@ -55,17 +55,6 @@ namespace FSI {
     void find_density();
   };
 
-  // The deficit of the layers of a lattice below a plane surface, linear in s between them
-  class DeficitOfPlane {
-   public:
-    DeficitOfPlane() = default;
-    DeficitOfPlane(int kernel, int dim, double h_over_dx);
-    double operator()(double s) const;
-
-   private:
-    std::vector<std::pair<double, double>> layers;    // s and deficit, from the inside
-  };
-
   // The kernel's deficit at free surfaces. Continuity conserves rho - m psi of a particle, psi
   // being its number density (pair_fsi_fluid.cpp): a particle that starts at a surface keeps its
   // deficit when it is covered, and a block of water that has fallen into a box would stay too
@@ -104,7 +93,10 @@ namespace FSI {
     double **deficit = nullptr;
     double since = 0.0, since_before = 0.0;    // the last look: now, at the start of this step
     bool due = false;
-    DeficitOfPlane of_plane;
+    // of the layers of a lattice below a plane surface, from the inside: s and deficit
+    std::vector<std::pair<double, double>> layers;
+    void find_layers();
+    double of_plane(double s) const;
     std::vector<double> changes;    // of deficit and density in this step
     std::vector<double> earlier;    // densities before it, for the ledger
     void pass(double dt);

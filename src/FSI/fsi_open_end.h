@@ -282,7 +282,7 @@ namespace FSI {
 
     Buffer(LAMMPS *lmp, OpenEnd &end) : Pointers(lmp), end(end) {}
     void set_fields(Fields &);
-    void init(const Discretization &, Ledger &, Population &);
+    void init(Ledger &, Population &);
     // before the first run; an empty one with the fluid before it, which goes on
     void populate();
     // when lists are built: what has passed the plane, or the end of the buffer
@@ -301,7 +301,6 @@ namespace FSI {
 
     OpenEnd &end;
     Population *population = nullptr;
-    const Discretization *disc = nullptr;
     Ledger *ledger = nullptr;
     double *members = nullptr;    // per atom: Member, as a number since a field is one
     // of one that is followed: where the next one would be now; its velocity, and the step since
@@ -315,10 +314,10 @@ namespace FSI {
     int first_axis() const { return end.axis == 0 ? 1 : 0; }
     Column along(const double *x) const { return {x[first_axis()], x[end.axis == 2 ? 1 : 2]}; }
     // slices of a spacing, counted from the plane
-    int number_of_slices() const { return static_cast<int>(std::round(end.length / disc->dx)); }
+    int number_of_slices() const { return static_cast<int>(std::round(end.length / end.disc->dx)); }
     int slice(double distance) const
     {
-      return std::max(0, static_cast<int>(std::ceil(distance / disc->dx - 1.0e-6)) - 1);
+      return std::max(0, static_cast<int>(std::ceil(distance / end.disc->dx - 1.0e-6)) - 1);
     }
     template <class Visit>
     void beside(const std::vector<Particle> &sorted, const double *x, Visit) const;

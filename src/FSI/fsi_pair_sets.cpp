@@ -31,7 +31,6 @@ void PairSets::init(const Discretization &disc_in, StepState &step_in, bool full
 {
   disc = &disc_in;
   step = &step_in;
-  has_levels = disc->has_levels();
   fluid_types.clear();
   other_types.clear();
   is_fluid.assign(atom->ntypes + 1, 0);
@@ -244,7 +243,7 @@ void PairSets::find_hidden(int i, const int *neighbors, int n)
   const int *const type = atom->type;
   const auto &level = disc->level_of;
   const size_t *const of_levels = &of_hidden[disc->levels.size() * level[type[i]]];
-  sight.look_from(atom->x[i], has_levels ? farthest_of(i, neighbors, n) : disc->cut, skin);
+  sight.look_from(atom->x[i], disc->has_levels() ? farthest_of(i, neighbors, n) : disc->cut, skin);
   hides.resize(n);
   for (int jj = 0; jj < n; jj++) {
     const int j = neighbors[jj];

@@ -116,8 +116,10 @@ namespace FSI {
     void add_pairs_behind_walls();
     void find_rows_with_others();
 
-    double within(const PairSet &set) const { return has_levels ? set.cut : disc->largest_cut; }
-    bool has_levels = false;
+    double within(const PairSet &set) const
+    {
+      return disc->has_levels() ? set.cut : disc->largest_cut;
+    }
     // The loop of rates sorts near pairs out when particles may have moved by the margin since it
     // last did. Before the lists are used by a second force evaluation at other positions they are
     // not known.
