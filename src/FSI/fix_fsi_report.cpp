@@ -249,7 +249,7 @@ std::string FixFSIReport::time_table(double loop)
       {"neighbor lists", ""},
       {"output", "thermo, dumps, restarts, computes they need"},
       {"rest", "drift and kick, other fixes, their computes, LAMMPS"}};
-  double local[NROW], sum[NROW], most[NROW], busiest;
+  double local[NROW], sum[NROW], most[NROW];
   std::copy_n(profile->seconds, (int) Profile::NPART, local);
   const bool known = timer->has_normal();
   local[Profile::MESSAGES] += known ? timer->get_wall(Timer::COMM) : 0.0;
@@ -259,8 +259,7 @@ std::string FixFSIReport::time_table(double loop)
   for (int k = 0; k < REST; k++) local[REST] -= local[k];
   MPI_Allreduce(local, sum, NROW, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(local, most, NROW, MPI_DOUBLE, MPI_MAX, world);
-  double work = loop - local[Profile::MESSAGES];
-  MPI_Allreduce(&work, &busiest, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double busiest = over_ranks(loop - local[Profile::MESSAGES], MPI_MAX, world);
 
   std::string text =
       fmt::format("  {:<16} {:>7} {:>10} {:>10}\n", "time", "share", "mean, s", "max, s");

@@ -171,7 +171,7 @@ void FixFSIStream::advance(bool advance)
   if (density_rate == 0.0) return;
   const int *const type = atom->type, n = atom->ntypes + 1;
   double *const rho = atom->rho;
-  std::vector<double> local(2 * n, 0.0), all(2 * n);
+  std::vector<double> local(2 * n, 0.0);
   const auto part = [&](double weight) {
     return -std::expm1(-density_rate * weight * dt);
   };
@@ -181,7 +181,7 @@ void FixFSIStream::advance(bool advance)
     local[2 * type[i]] += a;
     local[2 * type[i] + 1] += a * rho[i];
   }
-  MPI_Allreduce(local.data(), all.data(), 2 * n, MPI_DOUBLE, MPI_SUM, world);
+  const auto all = over_ranks(local, MPI_SUM, world);
   for (const auto &[i, weight] : zone) {
     if (weight == 0.0) continue;
     const double mean = all[2 * type[i] + 1] / all[2 * type[i]];

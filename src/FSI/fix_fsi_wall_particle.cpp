@@ -116,7 +116,7 @@ std::vector<int> FixFSIWallParticle::types_of_members()
   int moved = 0;    // groups that something moves, where fluid sticks
   for (const auto &fix : modify->get_fix_list())
     if (fix->time_integrate && !slip) moved |= fix->groupbit;
-  std::vector<int> local(atom->ntypes + 1, 0), types(atom->ntypes + 1);
+  std::vector<int> types(atom->ntypes + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     if (disc->state[atom->type[i]].species != RIGID)
@@ -128,10 +128,10 @@ std::vector<int> FixFSIWallParticle::types_of_members()
                  "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it "
                  "out, and move it with fix move or fix rigid",
                  atom->tag[i], id);
-    local[atom->type[i]] = 1;
-    if (atom->mask[i] & moved) local[0] = 1;
+    types[atom->type[i]] = 1;
+    if (atom->mask[i] & moved) types[0] = 1;
   }
-  MPI_Allreduce(local.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  types = over_ranks(types, MPI_MAX, world);
   turns = types[0];
   return types;
 }

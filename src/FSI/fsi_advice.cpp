@@ -129,13 +129,11 @@ Census::Census(LAMMPS *lmp, const Discretization &disc, const StepState &step,
   const bool streams = fluids.style && std::any_of(parts.begin(), parts.end(), [](const Part *p) {
                          return p->rank() == Part::STREAMS || p->rank() == Part::OPEN_ENDS;
                        });
-  std::vector<int> here(present);
-  double speed = 0.0;
   Found of_rank[NKIND];
   for (int i = 0; i < atom->nlocal; i++) {
     const bool moved = is_moved(i, lmp);
-    if (fluid(i) || moves(i)) here[atom->type[i]] = 1;    // what is held limits nothing
-    if (fluid(i)) speed = std::max(speed, std::sqrt(MathExtra::lensq3(atom->v[i])));
+    if (fluid(i) || moves(i)) present[atom->type[i]] = 1;    // what is held limits nothing
+    if (fluid(i)) fastest = std::max(fastest, std::sqrt(MathExtra::lensq3(atom->v[i])));
     const int kinds = kinds_of(i, moved, streams, rigid);
     for (int k = 0; k < NKIND; k++) {
       if (!(kinds & 1 << k)) continue;
@@ -143,8 +141,8 @@ Census::Census(LAMMPS *lmp, const Discretization &disc, const StepState &step,
       of_rank[k].first = std::min(of_rank[k].first, atom->tag[i]);
     }
   }
-  MPI_Allreduce(here.data(), present.data(), (int) here.size(), MPI_INT, MPI_MAX, world);
-  MPI_Allreduce(&speed, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
+  present = over_ranks(present, MPI_MAX, world);
+  fastest = over_ranks(fastest, MPI_MAX, world);
   for (int k = 0; k < NKIND; k++) found[k] = total_of(of_rank[k], world);
 }
 
@@ -579,7 +577,7 @@ static tagint first_that_sees_through(const Census &c, int type, const Cells &fl
   std::vector<int> beside;
   for (int i = 0; i < atom->nlocal; i++)
     if (c.fluid(i) && sight.near(atom->x[i])) beside.push_back(i);
-  tagint least = MAXTAGINT, first;
+  tagint least = MAXTAGINT;
   for (size_t k = 0; k < beside.size(); k += beside.size() / ENOUGH + 1) {
     const int i = beside[k];
     sight.look_from(atom->x[i], c.disc.cut);
@@ -591,8 +589,7 @@ static tagint first_that_sees_through(const Census &c, int type, const Cells &fl
         least = atom->tag[i];
     });
   }
-  MPI_Allreduce(&least, &first, 1, MPI_LMP_TAGINT, MPI_MIN, c.world);
-  return first;
+  return over_ranks(least, MPI_MIN, c.world);
 }
 
 static void seen_through(const Census &c)
@@ -648,7 +645,7 @@ static void ends(const Census &c)
   static constexpr double OFF = 0.15, CLOSE = 0.4, FEW = 5.0;    // spacings; particles of a row
   const auto &walls = c.walls.wall;
   const size_t faces = walls.size() + 2 * c.disc.dim;
-  std::vector<double> here(2 * faces), row(2 * faces);    // how many are next to each; distances
+  std::vector<double> here(2 * faces);    // how many are next to each; distances
   for (int i = 0; i < c.atom->nlocal; i++) {
     if (!c.fluid(i)) continue;
     const double *const x = c.atom->x[i];
@@ -665,7 +662,7 @@ static void ends(const Census &c)
       add(walls.size() + 2 * d + 1, (c.domain->boxhi[d] - x[d]) / c.dx(i));
     }
   }
-  MPI_Allreduce(here.data(), row.data(), (int) row.size(), MPI_DOUBLE, MPI_SUM, c.world);
+  const auto row = over_ranks(here, MPI_SUM, c.world);
   const auto is_row = [&](size_t face) {
     return row[2 * face] >= FEW;
   };

@@ -501,12 +501,12 @@ bool Quadrature::weigh(int i)
 // a lattice of three by three cannot warp
 void Quadrature::warn_of_bars(bigint bars, bigint all) const
 {
-  bigint of_rank[2] = {all, bars}, sum[2];
-  MPI_Allreduce(of_rank, sum, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (2 * sum[1] > sum[0] && comm->me == 0)
+  bars = count_of(bars, world);
+  all = count_of(all, world);
+  if (2 * bars > all && comm->me == 0)
     error->warning(FLERR,
                    "Pair style fsi/solid/tl: {} of {} particles are of bars of three particles or "
                    "fewer through the thickness: twisted, their frequency is 10 to 16 % too high. "
                    "Take four",
-                   sum[1], sum[0]);
+                   bars, all);
 }

@@ -279,9 +279,7 @@ void BondStore::reserve(int n)
 
 void BondStore::reserve_everywhere()
 {
-  int all;
-  MPI_Allreduce(&maxbond, &all, 1, MPI_INT, MPI_MAX, world);
-  reserve(all);
+  reserve(over_ranks(maxbond, MPI_MAX, world));
 }
 
 void BondStore::expect(size_t more)

@@ -152,11 +152,9 @@ void Buffer::check_census(const Census &all) const
 }
 
 // of a buffer that the script has filled: a hole would come in again and again
-void Buffer::check_slices(const std::vector<int> &rank_local) const
+void Buffer::check_slices(const std::vector<int> &of_rank) const
 {
-  std::vector<int> all(rank_local.size());
-  MPI_Allreduce(const_cast<int *>(rank_local.data()), all.data(), (int) all.size(), MPI_INT,
-                MPI_SUM, world);
+  const auto all = over_ranks(of_rank, MPI_SUM, world);
   const int most = *std::max_element(all.begin(), all.end());
   const auto few = std::find_if(all.begin(), all.end(), [&](int n) {
     return n < 0.5 * most;
@@ -257,15 +255,14 @@ std::vector<Particle> Buffer::go_on_behind() const
 int Buffer::full_slices() const
 {
   const int most = number_of_slices();
-  std::vector<int> local(most, 0), count(most);
+  std::vector<int> local(most, 0);
   end.for_fluid(0.0, 2.0 * end.length, [&](int, double s) {
     if (slice(s) < most) local[slice(s)]++;
   });
-  MPI_Allreduce(local.data(), count.data(), most, MPI_INT, MPI_SUM, world);
-  int full = 0, limit = std::max(slices_before_bodies(), 1), all;
+  const auto count = over_ranks(local, MPI_SUM, world);
+  int full = 0;
   while (full < most && count[full] > 0 && count[full] >= SPARSE * count[0]) full++;
-  MPI_Allreduce(&limit, &all, 1, MPI_INT, MPI_MIN, world);
-  return std::min(full, all);
+  return std::min(full, over_ranks(std::max(slices_before_bodies(), 1), MPI_MIN, world));
 }
 
 // that are not beside a body of this rank which has fluid at the plane before it
@@ -315,7 +312,7 @@ std::vector<int> Buffer::find_occupied(std::vector<Particle> &copies, bool at_st
 
   sort_along_plane(copies);
   const double reach = OCCUPIED * end.disc->dx;
-  std::vector<int> is_occupied(copies.size(), 0), occupied(copies.size());
+  std::vector<int> is_occupied(copies.size(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], s = end.inside(x);
     if (s < low - reach || s > high + reach) continue;
@@ -329,8 +326,7 @@ std::vector<int> Buffer::find_occupied(std::vector<Particle> &copies, bool at_st
       is_occupied[&c - copies.data()] = 1;
     });
   }
-  MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, end.ranks);
-  return occupied;
+  return over_ranks(is_occupied, MPI_MAX, end.ranks);
 }
 
 // Makes copies: IDs in the order in which they came to be followed, and of those of the parents,
@@ -424,7 +420,7 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
   auto all = gather(gone, end.ranks);
   sort_along_plane(all);
   const double reach = OCCUPIED * end.disc->dx, far = 2.0 * end.disc->dx;
-  std::vector<double> local(all.size(), far), nearest(all.size());
+  std::vector<double> local(all.size(), far);
   // visit(distance along the axis, to which of them) for a particle that is before one of them
   const auto before = [&](int i, const auto &visit) {
     if (!member(i) || end.inside(atom->x[i]) > far - end.length) return;
@@ -438,7 +434,7 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
     before(i, [&](double ahead, size_t k) {
       local[k] = std::min(local[k], ahead);
     });
-  MPI_Allreduce(local.data(), nearest.data(), (int) local.size(), MPI_DOUBLE, MPI_MIN, end.ranks);
+  const auto nearest = over_ranks(local, MPI_MIN, end.ranks);
   for (int i = 0; i < atom->nlocal; i++)
     before(i, [&](double ahead, size_t k) {
       if (member(i) == MEMBER && ahead == nearest[k]) members[i] = NEXT_OF_ROW;

@@ -420,8 +420,7 @@ bool Check::any_soft() const
 // where it holds for the particles of all ranks
 void Check::warn_of_sound()
 {
-  std::vector<double> all(deviations.size());
-  MPI_Allreduce(deviations.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);
+  const auto all = over_ranks(deviations, MPI_SUM, world);
   std::fill(deviations.begin(), deviations.end(), 0.0);    // until the next look
   for (size_t t = 0; t < dense.size() && !warned_soft; t++) {
     const double square = all[2 * t + 1] > 0.0 ? all[2 * t] / all[2 * t + 1] : 0.0;
@@ -505,12 +504,11 @@ void Check::enter(const Finding &other)
 void Check::judge(Stop::When when)
 {
   enum { CALM, PRESSED, DENSE, LOST_MEANING };
-  int here = found.tag               ? LOST_MEANING
+  const int here = found.tag         ? LOST_MEANING
       : densest.tag && !warned_dense ? DENSE
       : any_soft()                   ? PRESSED
-                                     : CALM,
-      all;
-  MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MAX, world);
+                                     : CALM;
+  const int all = over_ranks(here, MPI_MAX, world);
   if (all == PRESSED) warn_of_sound();
   if (all == DENSE) warn_of_density();
   if (all != LOST_MEANING) return;

@@ -14,7 +14,6 @@
 #include "fsi_clamps.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
@@ -220,10 +219,7 @@ void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool w
       local[6 * m.body + 3 + d] += torque[d];
     }
   }
-  if (comm->nprocs == 1)
-    sums = local;
-  else
-    MPI_Allreduce(local.data(), sums.data(), local.size(), MPI_DOUBLE, MPI_SUM, world);
+  sums = over_ranks(local, MPI_SUM, world);
 }
 
 // what fix rigid itself adds to the sums: keywords langevin and gravity

@@ -75,26 +75,35 @@ namespace FSI {
     return local;
   }
 
+  // of numbers on all ranks the sum, the largest or the least, place by place
+  template <class T> std::vector<T> over_ranks(std::vector<T> numbers, MPI_Op what, MPI_Comm world)
+  {
+    const MPI_Datatype type = std::is_same_v<T, double> ? MPI_DOUBLE
+        : std::is_same_v<T, bigint>                     ? MPI_LMP_BIGINT
+        : std::is_same_v<T, char>                       ? MPI_CHAR
+                                                        : MPI_INT;
+    MPI_Allreduce(MPI_IN_PLACE, numbers.data(), (int) numbers.size(), type, what, world);
+    return numbers;
+  }
+  template <class T> T over_ranks(T number, MPI_Op what, MPI_Comm world)
+  {
+    return over_ranks(std::vector<T>{number}, what, world)[0];
+  }
+
   // is it so on any of them?
   inline bool anywhere(bool local, MPI_Comm world)
   {
-    int here = local, any;
-    MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
-    return any;
+    return over_ranks((int) local, MPI_MAX, world);
   }
 
   inline double sum_of(double local, MPI_Comm world)
   {
-    double all;
-    MPI_Allreduce(&local, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-    return all;
+    return over_ranks(local, MPI_SUM, world);
   }
 
   inline bigint count_of(bigint local, MPI_Comm world)
   {
-    bigint all;
-    MPI_Allreduce(&local, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    return all;
+    return over_ranks(local, MPI_SUM, world);
   }
 
   // the largest limit between low and high that at most n keys of all ranks are below
@@ -119,10 +128,7 @@ namespace FSI {
 
   inline Found total_of(Found local, MPI_Comm world)
   {
-    Found all;
-    MPI_Allreduce(&local.count, &all.count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    MPI_Allreduce(&local.first, &all.first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-    return all;
+    return {count_of(local.count, world), over_ranks(local.first, MPI_MIN, world)};
   }
 
   template <class Is> inline Found find_particles(const Atom *atom, MPI_Comm world, Is is)

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_gravity.h"
 #include "fsi_find.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_lammps_access.h"
@@ -353,11 +354,11 @@ void BodyForces::find()
 void BodyForces::find_whole_types(const std::vector<State> &state)
 {
   const int ntypes = atom->ntypes, nfields = all.size(), n = acts_on_all.size();
-  std::vector<int> local(2 * n, 0), any(2 * n);    // type by type: with, without
+  std::vector<int> local(2 * n, 0);    // type by type: with, without
   for (int i = 0; i < atom->nlocal; i++)
     for (int k = 0; k < nfields; k++)
       local[(atom->mask[i] & all[k].mask ? 0 : n) + k * (ntypes + 1) + atom->type[i]] = 1;
-  MPI_Allreduce(local.data(), any.data(), 2 * n, MPI_INT, MPI_MAX, world);
+  const auto any = over_ranks(local, MPI_MAX, world);
   for (int at = 0; at < n; at++) {
     const int k = at / (ntypes + 1), t = at % (ntypes + 1);
     acts_on_all[at] = any[at] && !any[n + at];

@@ -53,7 +53,7 @@ void NumberDensity::renew()
     double most = 0.0;
     for (int i = 0; i < atom->nlocal; i++)
       if (disc.state[atom->type[i]].species == FLUID && step.psi[i] > most) most = step.psi[i];
-    MPI_Allreduce(&most, &step.psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
+    step.psi_reference = over_ranks(most, MPI_MAX, world);
   }
   if (disc.density_fluid != Discretization::CONTINUITY ||
       disc.density_solid != Discretization::CONTINUITY)

@@ -325,7 +325,7 @@ namespace FSI {
     Census take_census(std::vector<int> &slices, bool &has_some);
     void check_census(const Census &) const;
     void check_levels(bool is_empty) const;
-    void check_slices(const std::vector<int> &rank_local) const;
+    void check_slices(const std::vector<int> &of_rank) const;
     int find_last_of_rows();
     int full_slices() const, slices_before_bodies() const;
     std::vector<Particle> go_on_behind() const;

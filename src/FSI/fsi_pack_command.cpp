@@ -171,25 +171,25 @@ std::vector<char> FSIPack::deepest(int bit, double n) const
 // are packed
 void FSIPack::choose(double volume)
 {
-  double here[3] = {}, all[3];    // cells of fluid, of the body that are inside; of one of these
-  double cell = 0.0;
+  double in_fluid = 0.0, in_body = 0.0, cell = 0.0;    // cells that are inside; of one of the body
   for (int i = 0; i < atom->nlocal; i++) {
-    if (atom->mask[i] & fluid) here[0] += part_inside(i);
+    if (atom->mask[i] & fluid) in_fluid += part_inside(i);
     if (!(atom->mask[i] & body)) continue;
-    if (step->walls.is_before_planes(atom->x[i])) here[1] += part_inside(i);
+    if (step->walls.is_before_planes(atom->x[i])) in_body += part_inside(i);
     cell = std::pow(disc->dx_of(atom->type[i]), domain->dimension);
   }
-  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  MPI_Allreduce(&cell, &all[2], 1, MPI_DOUBLE, MPI_MAX, world);
-  const double wanted = body && all[2] > 0.0 ? std::round(volume / all[2]) : 0.0;
-  if (body && (wanted < 1.0 || all[1] * all[2] < COVERED * volume))
+  in_fluid = sum_of(in_fluid, world);
+  in_body = sum_of(in_body, world);
+  cell = over_ranks(cell, MPI_MAX, world);
+  const double wanted = body && cell > 0.0 ? std::round(volume / cell) : 0.0;
+  if (body && (wanted < 1.0 || in_body * cell < COVERED * volume))
     error->all(FLERR,
                "Fsi/pack: {} holds {:g} particles of the body, its lattice has {:.4g} inside: "
                "expected one that goes on beyond the surface",
-               surface->name(), wanted, all[1]);
+               surface->name(), wanted, in_body);
   const std::vector<char> none(atom->nlocal, 0);
   const auto inside = body ? deepest(body, wanted) : none,
-             displaced = fluid ? deepest(fluid, std::round(all[0])) : none;
+             displaced = fluid ? deepest(fluid, std::round(in_fluid)) : none;
   // filler: on the outside where there is no fluid, on the inside where there is no body
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & fluid && displaced[i])
@@ -319,12 +319,10 @@ void FSIPack::pack(int steps)
     });
     settling.run(std::min(ROUND, steps - done));
     done += std::min(ROUND, steps - done);
-    auto here = settling.residue();
-    double squares;
-    MPI_Allreduce(&here.largest, &residue[0], 1, MPI_DOUBLE, MPI_MAX, world);
-    MPI_Allreduce(&here.squares, &squares, 1, MPI_DOUBLE, MPI_SUM, world);
-    MPI_Allreduce(&here.n, &n, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    residue[1] = n ? std::sqrt(squares / n) : 0.0;
+    const auto &here = settling.residue();
+    n = count_of(here.n, world);
+    residue[0] = over_ranks(here.largest, MPI_MAX, world);
+    residue[1] = n ? std::sqrt(sum_of(here.squares, world) / n) : 0.0;
     if (comm->me == 0 && platform::walltime() - told > SECONDS) {
       told = platform::walltime();
       utils::logmesg(lmp, "  fsi/pack: {} of {} steps, residue {:.3g}, rms {:.3g}\n", done, steps,
@@ -396,8 +394,7 @@ void FSIPack::command(int narg, char **arg)
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & (fluid ? fluid : body))
       finest = std::min(finest, disc->dx_of(atom->type[i]));
-  MPI_Allreduce(MPI_IN_PLACE, &finest, 1, MPI_DOUBLE, MPI_MIN, world);
-  band = BAND * std::min(finest, disc->dx);
+  band = BAND * std::min(over_ranks(finest, MPI_MIN, world), disc->dx);
   renew_ghosts(lmp);
   step->gather_walls(lmp);
   const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";

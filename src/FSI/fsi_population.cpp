@@ -48,10 +48,10 @@ double Population::energy(int i) const
 void Population::leave_an_id_free()
 {
   if (!atom->tag_consecutive()) return;
-  tagint local = 0, largest;
+  tagint largest = 0;
   for (int i = 0; i < atom->nlocal; i++)
-    if (disc.state[atom->type[i]].species == FLUID) local = std::max(local, atom->tag[i]);
-  MPI_Allreduce(&local, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    if (disc.state[atom->type[i]].species == FLUID) largest = std::max(largest, atom->tag[i]);
+  largest = over_ranks(largest, MPI_MAX, world);
   if (largest == 0 || atom->natoms >= MAXTAGINT) return;
   if (comm->me == 0)
     utils::logmesg(lmp, "  atom {} is {} from now on: particles come and go\n", largest,
@@ -151,13 +151,12 @@ std::vector<tagint> Population::ids(int n, const std::string &label)
 // which of these, in rising order, particles have
 std::vector<char> Population::in_use(const std::vector<tagint> &list) const
 {
-  std::vector<char> local(list.size(), 0), all(list.size());
+  std::vector<char> local(list.size(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const auto at = std::lower_bound(list.begin(), list.end(), atom->tag[i]);
     if (at != list.end() && *at == atom->tag[i]) local[at - list.begin()] = 1;
   }
-  MPI_Allreduce(local.data(), all.data(), (int) list.size(), MPI_CHAR, MPI_MAX, world);
-  return all;
+  return over_ranks(local, MPI_MAX, world);
 }
 
 int Population::copy(int i, tagint id)
@@ -182,16 +181,13 @@ void Population::release(const std::vector<tagint> &of_rank)
 
 void Population::end()
 {
-  bigint local[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
-  tagint largest = last_id;
-  bigint all[2];
-  MPI_Allreduce(local, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (all[0] != wanted)
-    error->all(FLERR, "{}: {} of {} new particles are outside the box", maker, wanted - all[0],
+  const bigint born = count_of(made, world), more = born - count_of(removed, world);
+  last_id = over_ranks(last_id, MPI_MAX, world);
+  if (born != wanted)
+    error->all(FLERR, "{}: {} of {} new particles are outside the box", maker, wanted - born,
                wanted);
-  atom->natoms += all[0] - all[1];
-  net += all[0] - all[1];
+  atom->natoms += more;
+  net += more;
   renew_map();
 }
 

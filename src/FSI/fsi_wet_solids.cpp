@@ -18,6 +18,7 @@
 #include "force.h"
 #include "fsi_fields.h"
 #include "fsi_fluid_terms.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_pair_sets.h"
 #include "fsi_tensor.h"
@@ -36,8 +37,7 @@ void CutSolids::find_depths(const Walls &walls)
   const auto &wall = walls.wall;
   const int *const type = atom->type, n = wall.size();
   const auto *const x = vectors(atom->x), *const v = vectors(atom->v);
-  std::vector<double> here(n * (atom->ntypes + 1), -INFINITY), all(here.size()),
-      speeds(here.size());
+  std::vector<double> here(n * (atom->ntypes + 1), -INFINITY);
   const auto for_near = [&](auto f) {
     const InnerBox inner(wall, neighbor->skin);
     for (int i = 0; i < atom->nlocal; i++) {
@@ -49,7 +49,7 @@ void CutSolids::find_depths(const Walls &walls)
   for_near([&](int i, int m, const Wall &w) {
     here[m] = std::max(here[m], -w.distance(x[i]));
   });
-  MPI_Allreduce(here.data(), all.data(), here.size(), MPI_DOUBLE, MPI_MAX, world);
+  const auto all = over_ranks(here, MPI_MAX, world);
   may_pass = std::any_of(all.begin(), all.end(), [this](double depth) {
     return depth > -neighbor->skin;
   });
@@ -63,7 +63,7 @@ void CutSolids::find_depths(const Walls &walls)
     if (-w.distance(x[i]) == all[m])
       here[m] = std::max(here[m], -w.side * (v[i][w.axis] - w.velocity[w.axis]));
   });
-  MPI_Allreduce(here.data(), speeds.data(), here.size(), MPI_DOUBLE, MPI_MAX, world);
+  const auto speeds = over_ranks(here, MPI_MAX, world);
   for (size_t m = 0; m < all.size(); m++)
     if (all[m] > 0.0) depths[m] = {all[m], speeds[m]};
 }

@@ -21,6 +21,7 @@
 #include "fix_fsi_reference.h"
 #include "force.h"
 #include "fsi_find.h"
+#include "fsi_gather.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
@@ -272,10 +273,7 @@ bool PairFSI::several_bodies() const
       low = std::min(low, atom->molecule[i]);
       high = std::max(high, atom->molecule[i]);
     }
-  tagint all_low, all_high;
-  MPI_Allreduce(&low, &all_low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  MPI_Allreduce(&high, &all_high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return all_low < all_high;
+  return over_ranks(low, MPI_MIN, world) < over_ranks(high, MPI_MAX, world);
 }
 
 double PairFSI::init_one(int i, int j)
