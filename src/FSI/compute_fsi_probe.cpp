@@ -27,6 +27,7 @@
 #include "fsi_rows.h"
 #include "fsi_sight.h"
 #include "group.h"
+#include "math_extra.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -224,7 +225,7 @@ double ComputeFSIProbe::Place::along(int d, const double *x) const
 {
   const double *const e = step[d];
   return ((x[0] - origin[0]) * e[0] + (x[1] - origin[1]) * e[1] + (x[2] - origin[2]) * e[2]) /
-      (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+      MathExtra::lensq3(e);
 }
 
 // of a particle and its periodic images: calls f(shift, x)
@@ -285,7 +286,7 @@ template <class F> void ComputeFSIProbe::Place::for_points(const double *x, doub
   for (int d = 0; d < 3; d++) {
     if (n[d] == 1) continue;
     const double *const e = step[d];
-    const double t = along(d, x), r = cut / std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    const double t = along(d, x), r = cut / MathExtra::len3(e);
     lo[d] = std::max(0, static_cast<int>(std::ceil(t - r)));
     hi[d] = std::min(n[d] - 1, static_cast<int>(std::floor(t + r)));
   }
@@ -460,8 +461,7 @@ double ComputeFSIProbe::level(const Place &place, bool wet) const
     }
     here = next;
   }
-  const double *const e = place.step[0];
-  return (wet ? length : top) * std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+  return (wet ? length : top) * MathExtra::len3(place.step[0]);
 }
 
 // A particle of a fit to a solid: r from the point, or its displacement

@@ -29,6 +29,7 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "group.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
@@ -151,7 +152,7 @@ FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
     if (!(atom->mask[i] & disc->mover->groupbit)) continue;
     const double m = atom->rmass[i], *const v = atom->v[i];
     for (int d = 0; d < 3; d++) local[d] += m * v[d];
-    local[3] += m * std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    local[3] += m * MathExtra::len3(v);
   }
   MPI_Allreduce(local, all, 4, MPI_DOUBLE, MPI_SUM, world);
   if (scale) *scale = all[3];

@@ -23,6 +23,7 @@
 #include "fsi_rows.h"
 #include "fsi_stop.h"
 #include "group.h"
+#include "math_extra.h"
 #include "neigh_list.h"
 #include "output.h"
 #include "pair_fsi_solid_tl.h"
@@ -130,7 +131,7 @@ void FixFSIWatch::look_at_particles(double &kinetic, double &little)
     const double *const v = atom->v[i], m = atom->rmass[i], rho = atom->rho[i];
     // a wall is neither compressed nor integrated
     if (s.species == NONE || s.species == RIGID) continue;
-    const double vsq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    const double vsq = MathExtra::lensq3(v);
     kinetic += 0.5 * m * vsq;
     mass[atom->type[i]] += m;
     enter(GROWTH, i, vsq);

@@ -78,6 +78,7 @@ namespace FSI {
   // of numbers on all ranks the sum, the largest or the least, place by place
   template <class T> std::vector<T> over_ranks(std::vector<T> numbers, MPI_Op what, MPI_Comm world)
   {
+    static_assert(std::is_same_v<T, double> || std::is_integral_v<T>);
     const MPI_Datatype type = std::is_same_v<T, double> ? MPI_DOUBLE
         : std::is_same_v<T, bigint>                     ? MPI_LMP_BIGINT
         : std::is_same_v<T, char>                       ? MPI_CHAR

@@ -21,6 +21,7 @@
 #include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_record.h"
+#include "math_extra.h"
 
 #include <algorithm>
 #include <numeric>
@@ -37,9 +38,8 @@ Particle Population::copy_of(int i) const
 
 double Population::energy(int i) const
 {
-  const double *const v = atom->v[i];
-  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
-      step.body_forces.potential(i) + stored(i, atom, disc);
+  return 0.5 * atom->rmass[i] * MathExtra::lensq3(atom->v[i]) + step.body_forces.potential(i) +
+      stored(i, atom, disc);
 }
 
 // Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps

@@ -26,6 +26,7 @@
 #include "fsi_limits.h"
 #include "fsi_record.h"
 #include "lmptype.h"
+#include "math_extra.h"
 #include "universe.h"
 #include "update.h"
 #include "write_restart.h"
@@ -63,8 +64,8 @@ Finding Stop::not_finite(int i, bool forces) const
 {
   static constexpr double ZERO[3] = {0.0, 0.0, 0.0};
   const double *const f = forces ? atom->f[i] : ZERO, *const v = atom->v[i], *const x = atom->x[i];
-  const double values[] = {f[0] + f[1] + f[2], v[0] * v[0] + v[1] * v[1] + v[2] * v[2],
-                           atom->rho[i], x[0] + x[1] + x[2], atom->rmass[i]};
+  const double values[] = {f[0] + f[1] + f[2], MathExtra::lensq3(v), atom->rho[i],
+                           x[0] + x[1] + x[2], atom->rmass[i]};
   for (int k = FORCE; k <= MASS; k++) {
     if (std::abs(values[k]) < HUGE_SQUARE) continue;
     Finding found = finding(FINITE, i, values[k]);
@@ -116,7 +117,7 @@ Stop::Neighbor Stop::nearest_body(const Finding &all) const
       for (int k = 0; k < 3; k++) d[k] = k < disc.dim ? atom->x[i][k] - all.x[k] : 0.0;
       if (!std::isfinite(d[0] + d[1] + d[2])) continue;
       to_nearest_image(*domain, d);
-      const double r = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      const double r = MathExtra::len3(d);
       if (r < disc.largest_cut) f(i, r, d);
     }
   };
@@ -136,7 +137,7 @@ Stop::Neighbor Stop::nearest_body(const Finding &all) const
     local[3] += 1.0;
   });
   MPI_Allreduce(local, sum, 4, MPI_DOUBLE, MPI_SUM, world);
-  body.around = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) < 0.5 * sum[3];
+  body.around = MathExtra::len3(sum) < 0.5 * sum[3];
   return body;
 }
 
@@ -346,7 +347,7 @@ void Stop::write_neighbors(const Finding &all) const
     if (!itself) {
       if (!std::isfinite(d[0] + d[1] + d[2])) continue;
       to_nearest_image(*domain, d);
-      if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach * reach) continue;
+      if (MathExtra::lensq3(d) > reach * reach) continue;
     }
     local.push_back({atom->tag[i],
                      atom->molecule[i],
