@@ -14,7 +14,6 @@
 #include "pair_fsi_solid.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"

@@ -17,7 +17,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"

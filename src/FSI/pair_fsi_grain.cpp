@@ -14,7 +14,6 @@
 #include "pair_fsi_grain.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
