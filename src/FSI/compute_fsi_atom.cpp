@@ -55,7 +55,6 @@ ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) : Compute(lmp,
 
 ComputeFSIAtom::~ComputeFSIAtom()
 {
-  memory->destroy(vector_atom);
   memory->destroy(array_atom);
 }
 
@@ -73,16 +72,11 @@ void ComputeFSIAtom::init()
 
 void ComputeFSIAtom::grow()
 {
-  const int n = quantity.size();
   if (atom->nmax <= nmax) return;
   nmax = atom->nmax;
-  if (n == 1) {
-    memory->destroy(vector_atom);
-    memory->create(vector_atom, nmax, "fsi/atom:vector_atom");
-  } else {
-    memory->destroy(array_atom);
-    memory->create(array_atom, nmax, n, "fsi/atom:array_atom");
-  }
+  memory->destroy(array_atom);
+  memory->create(array_atom, nmax, (int) quantity.size(), "fsi/atom:array_atom");
+  if (!size_peratom_cols) vector_atom = array_atom[0];
 }
 
 void ComputeFSIAtom::compute_peratom()
@@ -91,7 +85,6 @@ void ComputeFSIAtom::compute_peratom()
   const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom");
   disc = &fix_fsi->disc;
   step = &fix_fsi->step;
-  const int n = quantity.size();
   grow();
   const bool sums = std::find(quantity.begin(), quantity.end(), PSI) != quantity.end();
   auto *const fluid = needs_shear();
@@ -109,7 +102,7 @@ void ComputeFSIAtom::compute_peratom()
     const bool chosen = atom->mask[i] & groupbit;
     double of[NQUANTITY] = {};
     if (chosen) find(i, of);
-    for (int k = 0; k < n; k++) (n == 1 ? vector_atom[i] : array_atom[i][k]) = of[quantity[k]];
+    for (size_t k = 0; k < quantity.size(); k++) array_atom[i][k] = of[quantity[k]];
   }
 }
 
