@@ -472,8 +472,8 @@ void Buffer::check_stranger(int i)
 
 // The last of a row has come a spacing from the end: another follows it, from the next list on, but
 // where it would be had it been made now, so that it does not matter when lists are built. The
-// spacing is that at which particles have the room of their density (Copies made a buffer's length
-// behind those that pass the plane would bring each gap again and again.)
+// spacing is that at which particles have the room of their density. (Copies of those that pass the
+// plane would bring each gap again.)
 void Buffer::follow(int i, double s, double column)
 {
   const double spacing = column * end.disc->dx * end.disc->state[atom->type[i]].rho0 / atom->rho[i];

@@ -240,14 +240,11 @@ namespace FSI {
   };
 
   // Pressure or normal velocity of the fluid at the nodes: a fit, quadratic along the plane, of the
-  // fluid within the kernel's support, which is on one side only. (A linear one takes 12 U
-  // sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the pressure,
-  // too.) Terms that the fluid there cannot tell from lower ones are left out.
-  // Where pressure is given the profile of the velocity is that of the fluid a buffer's length
-  // before the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi
-  // 2010, Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the
-  // plane keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes
-  // the particle before it follows what it pushes. (Half as far away some of it was left.)
+  // fluid within the kernel's support, which is on one side only. Terms that the fluid there cannot
+  // tell from lower ones are left out. Where pressure is given the profile of the velocity is that
+  // of the fluid a buffer's length before the plane, as in a channel that goes on behind it (a
+  // mapped inlet: Tabor and Baba-Ahmadi 2010, Comput. Fluids 39, 553), and only its mean is that at
+  // the plane: a profile taken there keeps itself (doc/notes/streams.md).
   class PlaneFit : protected Pointers {
    public:
     PlaneFit(LAMMPS *lmp, const OpenEnd &end) : Pointers(lmp), end(end), nodes(lmp) {}

@@ -133,15 +133,12 @@ namespace FSI {
   // 36, have it as a term of the rate):
   //   delta v_i = delta r_i.grad v,  g_ij = grad_i W_ij,
   //     grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,
-  // of fluid neighbors alone, exact for linear fields wherever they are. Without it vortices behind
-  // a cylinder are too weak (doc/src/theory.rst). This does not keep momentum, so it is done where
-  // the fluid fills its box: there walls and streams give and take momentum all the time; a jet or
-  // a drop has but its own. Density goes along unchanged: delta r.grad rho would be sound. But
-  // displaced particles fill their places with the mass that they have, so density and volume drift
-  // apart: in a closed stream pressure falls, between open ends it grows until particles are
-  // pressed out. There the rate of density has the velocity v + delta r/dt (of the step before), at
-  // the price of sound: half as much again in forces. Angular momentum and energy are not kept
-  // exactly; the energy ledger knows nothing of shifting.
+  // of fluid neighbors alone, exact for linear fields wherever they are. This does not
+  // keep momentum, so it is done where the fluid fills its box: there walls and streams give and
+  // take momentum all the time; a jet or a drop has but its own. Density goes along unchanged:
+  // delta r.grad rho would be sound. Between open ends alone, where density and volume would drift
+  // apart, its rate has the velocity v + delta r/dt of the step before. What each of these is worth
+  // and costs: doc/notes/shifting.md. The energy ledger knows nothing of shifting.
 
   // Of a fluid that fills its box neighbors in walls and solids have the factor
   //   1 + a max(0, W_ij - W(2 dx))/W(dx),
