@@ -133,8 +133,8 @@ namespace FSI {
     template <class Visit> void visit(int i, Visit) const;
   };
 
-  // A fix with fields, which may send messages. A restart file has its keywords, if it has some, and
-  // says what of each atom is whose.
+  // A fix with fields, which may send messages. A restart file has its keywords, if there are any,
+  // and says what of each atom is whose.
   class FixFields : public Fix {
    public:
     // command: as a user writes it, fix fsi/stress
