@@ -54,6 +54,15 @@ class Kernel:
         """sum of W over an infinite square or cubic lattice"""
         return self.W(np.linalg.norm(lattice([2 * int(self.cut / dx) + 3] * dim, dx, center=True), axis=1)).sum()
 
+    def weight_of_wall(self, w, dx):
+        """shifting's factor of neighbors in walls and solids, w: W_ij/W(dx): the part beyond a face of a lattice pulls as with the factor of fluid"""
+        d = lattice([2 * int(self.cut / dx) + 3] * self.dim, dx, center=True)
+        r = np.linalg.norm(d, axis=1)
+        d, r = d[d[:, 0] > 0.5 * dx, 0], r[d[:, 0] > 0.5 * dx]
+        even = lambda w: np.maximum(0, w - self.W(2 * dx) / self.W(dx))
+        pull = lambda factor: (factor(self.W(r) / self.W(dx)) * self.g(r) * d).sum()
+        return 1 + 0.2 * pull(lambda w: w**4) / pull(even) * even(w)
+
     def rubbing(self, form, hdx, w, d):
         """what laminar viscosity multiplies with 2 eta V V g: w, the relative velocity, in the plain form, (d+2)(w.d)d/l^2 in the central one;
         l^2 makes the force of v_x = y^2/2 right on a lattice whose rows lie anywhere, the mean over 16 places"""

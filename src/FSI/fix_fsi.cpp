@@ -117,9 +117,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   if (std::count(disc.thin.begin(), disc.thin.end(), 1.0))
     disc.sight = std::make_shared<Sight>(lmp, disc, step.walls, disc.thin);
 
-  nevery = 1;
-  time_integrate = force_reneighbor = create_attribute = 1;
-  pre_exchange_migrate = 1;
+  nevery = time_integrate = force_reneighbor = create_attribute = pre_exchange_migrate = 1;
   set_fields();
   register_fields();
   const auto &last = AtomVecFSI::of(atom)->of_fixes[command];

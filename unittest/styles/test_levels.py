@@ -203,7 +203,9 @@ def test_displacement(dim, kernel, walls):
             left = np.minimum(1, u2 / (0.003 * c)**2)
             i, j, d, r, k, _ = near(s, x, fine)
             spacing = Kernel(kernel, dim, k.h).W(k.h / 1.2)
-            want = sum_over(i, (V[j] * (1 + left[i] * 0.2 * (k.W(r) / spacing)**4) * k.g(r))[:, None] * d, s.n)
+            w = k.W(r) / spacing
+            factor = np.where(held[j], Kernel(kernel, dim, 1.2).weight_of_wall(w, 1.0) - 1, 0.2 * w**4)
+            want = sum_over(i, (V[j] * (1 + left[i] * factor) * k.g(r))[:, None] * d, s.n)
             h = np.where(fine, s.kernel.h / JUMP, s.kernel.h)
     want *= -C * c * h[:, None] * dt
     size = np.linalg.norm(want, axis=1)

@@ -11,16 +11,6 @@ C, SOUND, DT = 0.5, 10.0, 2e-3
 BOTH = pytest.mark.parametrize("n", [(12, 11), (7, 6, 6)], ids=["2D", "3D"])
 
 
-def weight_of_wall(w, kernel, dx, dim):
-    """Factor of neighbors in walls and solids: the part beyond a face of a lattice pulls as with the factor of fluid."""
-    steep, even = lambda w: 0.2 * (w / kernel.W(dx))**4, lambda w: np.maximum(0, w - kernel.W(2 * dx)) / kernel.W(dx)
-    d = lattice([13] * dim, dx, center=True)[:, :dim]
-    d = d[(np.linalg.norm(d, axis=1) < kernel.cut) & (d[:, 0] > 0.5 * dx)]
-    r = np.linalg.norm(d, axis=1)
-    pull = lambda factor: (factor(kernel.W(r)) * kernel.g(r) * d[:, 0]).sum()
-    return 1 + pull(steep) / pull(even) * even(w)
-
-
 def expected(x, volume, moves, kernel, dx, dim, walls, fills):
     """Displacements (n, dim) of one step; walls: axes with a mirror at 0; fills: there is no free surface."""
     x = x[:, :dim]
@@ -41,7 +31,7 @@ def expected(x, volume, moves, kernel, dx, dim, walls, fills):
         normal += (g[:, :, None] * d).sum(1)
         weight = 1 + 0.2 * (w / kernel.W(dx))**4
         if fills:
-            weight[:, ~moves] = weight_of_wall(w, kernel, dx, dim)[:, ~moves]
+            weight[:, ~moves] = kernel.weight_of_wall(w[:, ~moves] / kernel.W(dx), dx)
         sums += ((g * weight)[:, :, None] * d).sum(1)
         divergence -= np.where(inside, g * np.where(inside, r, 0)**2, 0).sum(1)
     missing = dim - divergence
