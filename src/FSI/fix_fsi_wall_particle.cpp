@@ -90,13 +90,19 @@ void FixFSIWallParticle::init()
   const auto *const preset = fluid->facts().preset;
   linear = pressure == LINEAR || (pressure == AS_PRESET && preset && preset->full);
   movers = fixes_of<FixFSIMove>(lmp);
-  for (const State &s : disc->state)
-    if (s.species == FLUID) fluid_density = s.rho0;
+  fluid_density = 0.0;
+  bool densities = false;
+  for (const State &s : disc->state) {
+    if (s.species != FLUID) continue;
+    densities = densities || (fluid_density > 0.0 && s.rho0 != fluid_density);
+    fluid_density = s.rho0;
+  }
   const bool stiffness = disc->several_stiffnesses();
   const int dim = disc->dim;
   first_moment = 2 + dim * (slip ? 1 : 2);
   first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : turns ? dim : 0);
-  nsum = first_stiffness + 2 * stiffness;
+  mixed = linear && densities;
+  nsum = first_stiffness + stiffness + mixed;    // that of densities last
   fields.set("sums over the fluid", Fields::STEP, true, sum, nsum);
   for (auto *message : {&to_ghosts, &from_ghosts}) {
     *message = std::make_unique<Message>(lmp, disc->state);
@@ -293,11 +299,8 @@ void FixFSIWallParticle::sum_up()
           for (int l = k; l < dim; l++) *m++ += W * d[k] * d[l];
         for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
       }
-      if (stiffness) {
-        const State &fluid = disc->state[type[j]];
-        s[first_stiffness] += W * fluid.rho0 * fluid.csq;
-        s[first_stiffness + 1] += W * fluid.rho0;
-      }
+      if (stiffness) s[first_stiffness] += W * disc->state[type[j]].rho0 * disc->state[type[j]].csq;
+      if (mixed) s[nsum - 1] += W * disc->state[type[j]].rho0;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     });
@@ -353,7 +356,7 @@ void FixFSIWallParticle::end_state(bool advance)
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
     if (linear && s[0] > 0.0) {
-      const double of_fluid = step->wall_stiffness ? s[first_stiffness + 1] / s[0] : fluid_density;
+      const double of_fluid = mixed ? s[nsum - 1] / s[0] : fluid_density;
       p += dim == 2 ? beyond_mean<2>(moments, s[0], s[1] / s[0], of_fluid, a)
                     : beyond_mean<3>(moments, s[0], s[1] / s[0], of_fluid, a);
     }

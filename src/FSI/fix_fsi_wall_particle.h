@@ -57,7 +57,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0:
                    // as the fluid has tension or not
   bool linear = false;           // extrapolates with the gradient, not a mean
-  double fluid_density = 0.0;    // at rest, where all fluids have rho c^2 in common
+  double fluid_density = 0.0;    // at rest
+  bool mixed = false;            // several fluids differ in it: each wall particle has a mean
   std::vector<class FixFSIMove *> movers;
   double **before = nullptr;    // velocity at the last step, and whether there was one
   const FSI::Discretization *disc = nullptr;

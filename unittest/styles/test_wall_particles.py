@@ -10,7 +10,8 @@ from scenes import WATER, Kernel, close, difference, differing, lammps, lattice,
 from fsi import dump, paths
 
 DX, C, G = 0.01, 20.0, 9.81
-MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500", wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
+MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500", as_stiff="fluid rho 1000 sound 14.142135623730951",
+                      wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
 
 
 def data(x, kind, v=None, box=((-0.2,) * 3, (0.6,) * 3), rho=0.0):
@@ -212,7 +213,7 @@ def test_pressure_linear_on_a_wall_that_accelerates(tmp_path):
     kind = np.where(x[:, 1] < 4 * DX, 2, 1)
     x[:, :2] += np.random.default_rng(3).uniform(-0.15, 0.15, (len(x), 2)) * DX
     found = []
-    for names in ("light wall light", "light buoy light", "light wall water"):
+    for names in ("light wall light", "light buoy light", "light wall water", "light wall as_stiff"):
         (folder := tmp_path / names.replace(" ", "-")).mkdir()
         text = deck("tension yes", names, "pressure linear", f"fix m wall fsi/move wiggle 0.002 0.001 0 0.01 units box\n{shot()}run 5")
         rows = particles(x, kind, rho=0.0, box=np.transpose(BOX2), types=3)
