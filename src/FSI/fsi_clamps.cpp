@@ -219,7 +219,7 @@ void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool w
       local[6 * m.body + 3 + d] += torque[d];
     }
   }
-  sums = over_ranks(local, MPI_SUM, world);
+  sums = over_ranks(std::move(local), MPI_SUM, world);
 }
 
 // what fix rigid itself adds to the sums: keywords langevin and gravity

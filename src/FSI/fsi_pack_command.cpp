@@ -350,8 +350,9 @@ void FSIPack::refuse_bonded() const
 {
   const auto *const bonds =
       dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
+  if (!bonds) return;
   const auto bonded = find_particles(atom, world, [&](int i) {
-    return bonds && atom->mask[i] & body && bonds->has(i);
+    return atom->mask[i] & body && bonds->has(i);
   });
   if (bonded.count)
     error->all(FLERR,

@@ -273,7 +273,9 @@ bool PairFSI::several_bodies() const
       low = std::min(low, atom->molecule[i]);
       high = std::max(high, atom->molecule[i]);
     }
-  return over_ranks(low, MPI_MIN, world) < over_ranks(high, MPI_MAX, world);
+  low = over_ranks(low, MPI_MIN, world);    // one after the other, as on all ranks
+  high = over_ranks(high, MPI_MAX, world);
+  return low < high;
 }
 
 double PairFSI::init_one(int i, int j)
