@@ -221,6 +221,23 @@ static void units(const Census &c)
   }
 }
 
+// A background pressure is a numerical choice, but compresses bodies as any other pressure does
+static void background(const Census &c)
+{
+  static constexpr double MUCH = 0.05;    // of the volume
+  double p = 0.0;
+  for (size_t t = 1; t < c.present.size(); t++)
+    if (c.present[t] && c.disc.state[t].species == FLUID) p = std::max(p, c.disc.state[t].p0);
+  for (size_t t = 1; t < c.present.size(); t++) {
+    const State &s = c.disc.state[t];
+    if (c.present[t] && s.species == SOLID && p > MUCH * s.rho0 * s.csq)
+      c.warn(
+          "the background pressure {:g} compresses bodies of type {}, of bulk modulus {:.3g}, by "
+          "{:.0f} % of their volume: take less of it, or a larger Poisson's ratio",
+          p, t, s.rho0 * s.csq, 100.0 * p / (s.rho0 * s.csq));
+  }
+}
+
 static void box(const Census &c)
 {
   for (int d = 0; d < c.disc.dim; d++)
@@ -765,6 +782,7 @@ static constexpr struct {
 static void advise(const Census &c)
 {
   units(c);
+  background(c);
   box(c);
   if (spacing(c) && c.solids.style) {
     if (c.at_first()) contact(c);

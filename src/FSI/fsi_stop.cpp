@@ -200,6 +200,8 @@ static constexpr struct Tip {
     {DENSITY, FLUID, ANY_TIME, nullptr, "a higher speed of sound"},
     {DENSITY, NONE, ANY_TIME, "density/diffusion", "density/diffusion 0.1"},
     {DENSITY, SOLID, ANY_TIME, "hourglass", "hourglass"},
+    {DENSITY, SOLID, ANY_TIME, "+law svk",
+     "law neohookean, which stays stiff when it is compressed"},
     {DENSITY, FLUID, ANY_TIME, "+tension", "tension no, if there is a free surface"},
     {ENERGY, NONE, ANY_TIME, nullptr, "a look at this, the fastest particle"},
     {ENERGY, FLUID, ANY_TIME, "artificial/visc", "artificial/visc 0.02 0"},

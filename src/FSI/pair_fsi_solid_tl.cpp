@@ -1021,7 +1021,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   list.insert(list.begin(),
               {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields",
                            laws.facts().title, linear ? "linear" : "quadratic"),
-               "law", true});
+               fmt::format("law {}", laws.facts().name), true});
   if (smoothed.on())
     list.push_back(
         {"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});

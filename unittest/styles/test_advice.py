@@ -94,6 +94,9 @@ CASES = {
     "default": ([("timestep 4e-5\n", "")], None, r"time step 1e-08, LAMMPS' default, is"),
     "grams": (*mine(rho=1.0e-3), r"density 0.001 of type 2 is that of no material in units si, in which water has 1000"),
     "megapascal": (*mine(young=2.0), r"elastic waves in type 2 run at 0.065 m/s only: moduli are in pascal"),
+    # K = young/3(1 - 2 0.4) = 3.33e4
+    "soft": ([("sound 12.53", "sound 12.53 background 2e3 tension yes"), *mine(young=2e4)[0]], mine(young=2e4)[1],
+             r"background pressure 2000 compresses bodies of type 2, of bulk modulus 3.33e\+04, by 6 % of their volume: take less"),
     "yield": ([("materials.fsi", "mine.fsi")], MATERIALS.format(rho=1000, young=2e6).replace("poisson 0.4", "poisson 0.4 yield 1e4"),
               r"material of type 2 has a yield stress, but stays elastic: .* fix fsi/stress \.\.\. plastic"),
     "contact": (TWO_BODIES, None, r"bodies 1 and 2 begin 1 spacings apart at the start, and contact reaches 2.5: it pushes at once. Move them apart, or contact 1$"),

@@ -275,6 +275,18 @@ def test_advice_names_nothing_that_is_on(tmp_path):
     assert "a higher speed of sound" in full and "cfl/fluid of fix fsi/dt" in full and "artificial/visc" not in full
 
 
+def test_a_body_that_folds_is_told_of_another_law(tmp_path):
+    """St. Venant-Kirchhoff softens when it is compressed; a blow of twice its speed of sound folds the plate, but not one of the other law."""
+    def strike(law):
+        scene = dam_gate(2, solid_style="fsi/solid/tl", solid=f"law {law} artificial/visc 0.5 0", sph="mach off")
+        plate = scene.x[:, 0] > 14 * DX
+        scene.v[plate, 1] = -20.0 * np.sign(scene.x[plate, 1] - 7 * DX)
+        return lammps(tmp_path / law, re.sub("timestep .*", "timestep 1e-5", scene.text()) + "run 500\n", scene_data=scene.data())
+
+    assert "law neohookean, which stays stiff when it is compressed" in error(strike("svk"))
+    assert strike("neohookean").status == 0
+
+
 def test_the_cause_is_told_even_if_nothing_can_be_written(tmp_path):
     scene = fluid_box(2)
     scene.v[57] = [0.0, 12.0, 0.0]

@@ -54,7 +54,7 @@ def test_head_says_what_is_met_and_what_failed(found):
     assert "with a reference from outside, 2 of 3 are met.**" in head  # speed, time, slope
     assert "by a run of this package 1 of 1 are met, of self-checks without a reference 1 of 1." in head
     assert "**Failed, in part or as a whole: lost, study.**" in head
-    assert "All 2 scenes together take 0.2 hours on one core." in head  # 2 * 12.34 + 1 + 3 * 200 s
+    assert "All 2 scenes and the hard cases together take 0.2 hours on one core." in head  # 2 * 12.34 + 1 + 3 * 200 s
     assert "All 7 figures are in [results.csv](results.csv), with the 1 self-checks that are met." in head
     assert head.count("![") == 1
 
