@@ -655,6 +655,46 @@ static void shallow(const Census &c)
   }
 }
 
+// Walls of particles that have a velocity and that no fix moves: along its face such a wall is a
+// belt, with others before and behind each of its particles; across it fluid is pressed or drawn by
+// what never comes
+static void standing_walls(const Census &c)
+{
+  static constexpr double BESIDE = 1.5, NEXT = 0.6;    // spacings
+  const Cells fluids = c.cells(BESIDE * c.coarsest(), [&](int i) {
+    return c.fluid(i);
+  });
+  const Cells walls = c.cells(NEXT * c.coarsest(), [&](int i) {
+    return c.state(i).species == RIGID;
+  });
+  const auto any_near = [&](const Cells &cells, const double *x, double reach) {
+    bool any = false;
+    cells.around(x, reach, [&](int, double rsq) {
+      any |= rsq < reach * reach;
+    });
+    return any;
+  };
+  const auto stands = [&](int i) {
+    return c.state(i).species == RIGID && c.goes(i) && !is_moved(i, c.lmp) &&
+        any_near(fluids, c.atom->x[i], BESIDE * c.dx(i));
+  };
+  const auto all = find_particles(c.atom, c.world, stands);
+  if (!all.count) return;
+  const auto across = find_particles(c.atom, c.world, [&](int i) {
+    const double *const x = c.atom->x[i], *const v = c.atom->v[i],
+                        step = c.dx(i) / MathExtra::len3(v);
+    const auto next = [&](double way) {
+      const double p[3] = {x[0] + way * v[0], x[1] + way * v[1], x[2] + way * v[2]};
+      return any_near(walls, p, NEXT * c.dx(i));
+    };
+    return stands(i) && !(next(step) && next(-step));
+  });
+  if (2 * across.count > all.count)
+    c.warn("{} wall particles, the first of them atom {}, have a velocity across their face, and "
+           "no fix moves them: fix move or fix fsi/move",
+           across.count, across.first);
+}
+
 // A lattice of fluid ends half a spacing from a mirror wall, and closes around the periodic box: if
 // not, their distance is no whole number of spacings, and what is missing expands.
 static void ends(const Census &c)
@@ -801,6 +841,7 @@ static void advise(const Census &c)
       seen_through(c);
       shallow(c);
       pressed(c);
+      standing_walls(c);
       ends(c);
     }
   }

@@ -47,6 +47,11 @@ def mine(**what):
     return [("materials.fsi", "mine.fsi")], MATERIALS.format(**{"rho": 1000, "young": 2e6, **what})
 
 
+# the plate as a wall of particles
+WALL = [("fix g all", "group water type 1\nfix w plate fsi/wall/particle\nfix g all"), ("set group plate mol 1\n", ""),
+        ("hybrid fsi/fluid sound 12.53", "fsi/fluid sound 12.53"), (" fsi/solid/tl\n", "\n"),
+        ("pair_coeff * * fsi/fluid materials.fsi water_inviscid plate\n", "fsi/material bed wall rho 500\npair_coeff * * materials.fsi water_inviscid bed\n"),
+        ("pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n", ""), ("fix sph all", "fix sph water")]
 TWO_BODIES = [("set group plate mol 1\n", "set group plate mol 1\nregion up block INF INF 0.04 INF INF INF units box\ngroup up region up\ngroup up intersect up plate\n"
                "set group up mol 2\n"), ("fsi/solid/tl\npair", "fsi/solid/tl contact 2.5\npair")]
 
@@ -113,11 +118,10 @@ CASES = {
                      ("create_atoms 2 region plate", "")], None,
                     r"a stream without tension opens holes .* background of about rho U\^2, U being its largest speed, and tension yes$"),
     "weightless fluid": ([("fix g all", "fix g plate")], None, r"40 moving particles of fluids, the first of them atom 1, are in the group of no fix gravity"),
-    "pressed": ([("fix g all", "group water type 1\nfix w plate fsi/wall/particle\nfix g all"),
-                 ("set group plate mol 1\n", ""), ("hybrid fsi/fluid sound 12.53", "fsi/fluid preset closed 1.253"), (" fsi/solid/tl\n", "\n"),
-                 ("pair_coeff * * fsi/fluid materials.fsi water_inviscid plate\n", "fsi/material bed wall rho 500\npair_coeff * * materials.fsi water_inviscid bed\n"),
-                 ("pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n", ""), ("fix sph all", "fix sph water")], None,
+    "pressed": ([(old, new.replace("sound 12.53", "preset closed 1.253")) for old, new in WALL], None,
                 r"with gravity shifting at walls of particles feeds the fluid energy: leave fix gravity out, .* preset closed shift 0$"),
+    "standing": ([*WALL, ("run 0", "velocity plate set -0.1 0 0 units box\nrun 0")], None,
+                 r"8 wall particles, the first of them atom 41, have a velocity across their face, and no fix moves them: fix move or fix fsi/move$"),
     "nothing acts": ([("fix g all gravity 9.81 vector 0 -1 0\n", "")], None, r"nothing moves this scene: no gravity, no velocity"),
     "shallow": ([("block 0 0.05 0 0.08", "block 0 0.05 0 0.07")], None,
                 r"fluid is 7 spacings deep on the mirror wall at y = 0: .* less than 8 rows sink there, .* Give it hydrostatic yes, or build the wall of particles$"),
@@ -163,6 +167,8 @@ def test_sound_deck_is_not_criticized(tmp_path):
     # the bounds themselves: 7 sqrt(2gH), 0.4 h/c_l, three layers
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
     assert advice(tmp_path, [("block 0 0.05 0 0.08", "block 0 0.05 0 0.07"), ("ylo 0", "ylo 0 hydrostatic yes")]) == []
+    # a belt
+    assert advice(tmp_path, [*WALL, ("run 0", "velocity plate set 0 0.1 0 units box\nrun 0")]) == []
     # a body that swings by little: of the sound decides its frequency
     assert advice(tmp_path, [("run 0", "velocity all set 1e-5 0 0 units box\nrun 0"), ("fix g all", "#")]) == []
     # a thin plate that is said to be thin, and one of three layers between the same water
