@@ -213,17 +213,17 @@ SCENES = [
     ("rolling_tank", "the same, 3 particles | -{} mm", sizes, ["tip_left_baffle"]),
     ("rolling_tank", "the same, 4 particles | -{} mm", sizes, ["tip_left_baffle_4_across"]),
     ("rolling_tank", "oil at 2 mm | -{} mm | -{} mm", sizes, ["tip_left_baffle_coarse_oil", "tip_left_baffle"]),
-    *((("turek_hron_fsi", f"| uy | {{}} +- {{}} [{{}}] (amplitude {signs[0]}{{}} %) | {{}} +- {{}} [{{}}] ({signs[1]}{{}} %) | {{}} +- {{}} [{{}}] ({signs[2]}{{}} %) |",
+    *((("turek_hron_fsi", f"| uy | {lead}{{}} +- {{}} [{{}}] (amplitude {signs[0]}{{}} %) | {{}} +- {{}} [{{}}] ({signs[1]}{{}} %) | {{}} +- {{}} [{{}}] ({signs[2]}{{}} %) |",
         lambda scene, *runs: [x for n in runs for x in (*sizes(scene, f"uy_mean_{n}", f"uy_amplitude_{n}", f"frequency_{n}"), *figures(scene, f"uy_amplitude_{n}"))],
-        [f"{kind}_{n}" for n in ("2", "4", "2_to_8")])) for kind, signs in (("fsi2", "+++"), ("fsi3", "-++"))),
-    ("turek_hron_fsi", "| lift | -{} +- {} (amplitude -{} %) | {} +- {} (+{} %) | {} +- {} (+{} %) |",
+        [f"{kind}_{n}" for n in ("2", "4", "2_to_8")])) for kind, lead, signs in (("fsi2", "", "+++"), ("fsi3", "-", "-++"))),
+    ("turek_hron_fsi", "| lift | -{} +- {} (amplitude +{} %) | -{} +- {} (+{} %) | {} +- {} (+{} %) |",
      lambda scene, *runs: [x for n in runs for x in (*sizes(scene, f"lift_mean_{n}"), *mixed(scene, f"lift_amplitude_{n}"))], ["fsi3_2", "fsi3_4", "fsi3_2_to_8"]),
     ("twisting_column", "top | {} turns", sizes, ["largest_twist"]),
     ("twisting_column", "over the first | {} |", sizes, ["twist_the_other_way"]),
     *((("vortex_induced", f"| {u} | {{}} (-{{}} %) | {{}} (-{{}} %) | {{}} ({sign}{{}} %) |", mixed, [f"amplitude_{u}_{n}" for n in ("8", "12", "7_to_28")]))
-      for u, sign in ((4, "-"), (6, "+"))),
+      for u, sign in ((4, "+"), (6, "+"))),
     ("vortex_induced", "| 5 | {} (-{} %) | - |", mixed, ["amplitude_5_8"]),
-    ("vortex_induced", "| 7 | {} (-{} %) | - | {} (+{} %) |", mixed, ["amplitude_7_8", "amplitude_7_7_to_28"]),
+    ("vortex_induced", "| 7 | {} (-{} %) | - | {} (-{} %) |", mixed, ["amplitude_7_8", "amplitude_7_7_to_28"]),
     *((("vortex_induced", f"| {u} | {{}} (", sizes, [f"amplitude_{u}_8"])) for u in (3, 8)),
     ("vortex_induced", "it is {} D over the last 20 D/U and {} D over the 20 D/U before", sizes, ["amplitude_8_8", "amplitude_before_8_8"]),
     *((("wedge_entry", f"{beta} degrees | force / (rho V^3 t) | {{}} | {{}} | {{}} (-{{}} %)",
@@ -270,7 +270,7 @@ def test_rings_remain_symmetric():
 # Numbers in the text of results and deviations that are no figures of a run: settings, lengths, places; closed forms and what others computed;
 # what tests or reference data give; what follows from numbers of the page. Nothing compares these.
 NOT_COMPARED = {
-    "beam": "1.7", "cylinder_free": "9", "dam_break": "0.267", "flexible_plate": "0.1", "floating_flap": "1.4", "gate_static": "0.8",
+    "beam": "1.7", "cylinder_free": "9 9", "dam_break": "0.267", "flexible_plate": "0.1 9", "floating_flap": "1.4", "gate_static": "0.8",
     "lid_driven_cavity": "0.9063", "plate_crossflow": "14.4", "plate_damping": "0.04", "ring_annulus": "1.5 0.1", "rolling_tank": "1.4 0.8 1.5",
     "settling_disc": "2", "standing_wave": "3.6", "submerged_plate": "1.4 5.5 0.8", "turek_hron_csm": "1.0948 0.005 1.094", "twisting_column": "4",
     "valve": "3 0.5", "wedge_entry": "1.97 8.96"}
