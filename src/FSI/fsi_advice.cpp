@@ -681,13 +681,14 @@ static void standing_walls(const Census &c)
   const auto all = find_particles(c.atom, c.world, stands);
   if (!all.count) return;
   const auto across = find_particles(c.atom, c.world, [&](int i) {
+    if (!stands(i)) return false;
     const double *const x = c.atom->x[i], *const v = c.atom->v[i],
                         step = c.dx(i) / MathExtra::len3(v);
     const auto next = [&](double way) {
       const double p[3] = {x[0] + way * v[0], x[1] + way * v[1], x[2] + way * v[2]};
       return any_near(walls, p, NEXT * c.dx(i));
     };
-    return stands(i) && !(next(step) && next(-step));
+    return !next(step) || !next(-step);
   });
   if (2 * across.count > all.count)
     c.warn("{} wall particles, the first of them atom {}, have a velocity across their face, and "

@@ -210,7 +210,7 @@ VAIN = {
                                         ["Pair style fsi/solid with gradient, artificial/stress has nothing to act on: no particle is a solid",
                                          "Fix fsi/stress has nothing to act on: no particle is a solid"]),
     "sub-steps without solid": (world("hybrid fsi/fluid sound 10 fsi/solid/tl", 1, "substeps 4").replace("* fsi/solid m", "* fsi/solid/tl m").replace(
-        "fix stress all fsi/stress", ""), ["Pair style fsi/solid/tl with law, hourglass has nothing", "Fix fsi substeps has nothing"]),
+        "fix stress all fsi/stress", ""), ["Pair style fsi/solid/tl with law svk, hourglass has nothing", "Fix fsi substeps has nothing"]),
     "density of fluids without their style": (world("fsi/solid", 2, "fluid summation"), ["Fix fsi fluid density has nothing to act on"]),
     "density of solids without their style": (world("fsi/fluid sound 10", 1, "solid ratio"), ["Fix fsi solid density has nothing to act on"]),
     "no-slip walls without viscosity": (world("fsi/fluid sound 10", 1, commands="fix walls all fsi/wall/mirror ylo 0 slip no"),
