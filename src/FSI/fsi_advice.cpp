@@ -56,7 +56,7 @@ namespace {
 // clang-format off
 enum Kind {    // of particles that are counted
   FLUIDS, SOLIDS, HELD_FLUID, BODIES, GOING_BODIES, INTEGRATED_BODIES, EXCLUDED, ACTED_ON,
-  TEARING, FALLING, WEIGHTLESS_FLUID, WEIGHTLESS_SOLID, WEIGHTLESS_RIGID, NKIND
+  TEARING, FALLING, WEIGHTLESS_FLUID, WEIGHTLESS_SOLID, WEIGHTLESS_RIGID, STANDING_WALLS, NKIND
 };
 // clang-format on
 
@@ -153,7 +153,8 @@ int Census::kinds_of(int i, bool moved, bool streams, int bodies) const
   const auto bit = [](bool is, int kind) {
     return is ? 1 << kind : 0;
   };
-  int kinds = bit(fluids.style && acted_on(i, moved), ACTED_ON);
+  int kinds = bit(fluids.style && acted_on(i, moved), ACTED_ON) |
+      bit(state(i).species == RIGID && !moved && goes(i), STANDING_WALLS);
   const bool sums = fluid(i) || (solid(i) && solids.style == Facts::OF_SOLIDS);
   kinds |= bit(sums && excludes_neighbors(i), EXCLUDED);
   if (fluid(i))
@@ -661,6 +662,7 @@ static void shallow(const Census &c)
 static void standing_walls(const Census &c)
 {
   static constexpr double BESIDE = 1.5, NEXT = 0.6;    // spacings
+  if (!c.any(STANDING_WALLS)) return;
   const Cells fluids = c.cells(BESIDE * c.coarsest(), [&](int i) {
     return c.fluid(i);
   });
@@ -679,7 +681,6 @@ static void standing_walls(const Census &c)
         any_near(fluids, c.atom->x[i], BESIDE * c.dx(i));
   };
   const auto all = find_particles(c.atom, c.world, stands);
-  if (!all.count) return;
   const auto across = find_particles(c.atom, c.world, [&](int i) {
     if (!stands(i)) return false;
     const double *const x = c.atom->x[i], *const v = c.atom->v[i],
