@@ -799,16 +799,36 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d] / -volume_of<D>(i);
 }
 
+// The image of a fluid particle is as far from a solid as the particle is from that of the solid
 void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = disc->dim;
+  double **const x = atom->x, **const v = atom->v;
   for_levels(*disc, [&](size_t level, const auto &kernel) {
+    const auto add = [&](int j, double rsq, const double *vi) {
+      const double W = kernel.W(std::sqrt(rsq));
+      for (int d = 0; d < dim; d++) beyond[j][d] += W * vi[d];
+      beyond[j][dim] += W;
+    };
     for (const Row &row : pairs.of(level, PairSet::SOLIDS).rows.rows)
-      for_near(row, atom->x, dim, kernel.cutsq, [&](int j, const double *, double rsq) {
-        const double W = kernel.W(std::sqrt(rsq));
-        for (int d = 0; d < dim; d++) beyond[j][d] += W * atom->v[row.i][d];
-        beyond[j][dim] += W;
+      for_near(row, x, dim, kernel.cutsq, [&](int j, const double *, double rsq) {
+        add(j, rsq, v[row.i]);
       });
+    pairs.for_images(step->walls, nullptr, [&](const PairSet &set, int k, const Mirror *mirror) {
+      if (set.what != PairSet::SOLIDS || set.level != level) return;
+      for (const Row &row : set.images[k].rows) {
+        double xi[3], vi[3];
+        mirror->reflect(x[row.i], xi);
+        for (int d = 0; d < 3; d++)
+          vi[d] = mirror->rubbing_v[d] + mirror->rubbing_sign[d] * v[row.i][d];
+        for (int m = 0; m < row.n; m++) {
+          const int j = row.j[m] & NEIGHMASK;
+          double rsq = 0.0;
+          for (int d = 0; d < dim; d++) rsq += (x[j][d] - xi[d]) * (x[j][d] - xi[d]);
+          if (rsq < kernel.cutsq) add(j, rsq, vi);
+        }
+      }
+    });
   });
 }
 
