@@ -410,8 +410,7 @@ void ComputeFSIProbe::sum_up()
   sums.assign((size_t) npoints * nsums, 0.0);
   all.resize(sums.size());
 
-  // walls are known at the middle of the step, where forces are; positions are those of its end
-  const Walls walls = step->walls.moved(step->behind);
+  const Walls &walls = step->walls;
   std::vector<double> at(points);
   const std::vector<int> mask = walls_near(walls, at);
   for (size_t level = 0; level < disc->levels.size(); level++)

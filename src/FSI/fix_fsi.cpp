@@ -334,6 +334,8 @@ void FixFSI::final_integrate()
   for (auto *p : parts) p->react();
   kick();
   turn();
+  // to where particles are, for computes
+  if (step.walls.any()) step.walls = step.walls.moved(0.5 * update->dt);
 }
 
 // The second drift may take particles out of a box that was around them when lists were made. A
