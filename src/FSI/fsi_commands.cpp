@@ -98,10 +98,18 @@ void FSIClamp::command(int narg, char **arg)
     });
     if (next) over.push_back(i);
   }
+  bool moved = false;
   for (const int i : over) {
     mask[i] = (mask[i] & ~bit[0]) | bit[1];
     std::fill_n(atom->v[i], 3, 0.0);    // whoever moves the clamp gives it another
+    moved |= (mask[i] & disc.mover->groupbit) != 0;
   }
+  if (anywhere(moved, world))
+    error->all(
+        FLERR,
+        "Fsi/clamp {} {}: fix {} (style fsi) would still move the particles that go to {}: "
+        "expected its group {} as the first one, and one that it does not move as the second",
+        names[0], names[1], disc.mover->id, names[1], group->names[disc.mover->igroup]);
   const bigint all = count_of(over.size(), world);
   if (all == 0)
     error->all(FLERR,

@@ -69,6 +69,8 @@ def test_a_bar_hangs_as_long_as_it_is(tmp_path):
     ("fsi/clamp moving nobody", "group-ID nobody does not exist"),
     ("fsi/clamp all held", "group-ID all: expected a group of a part"),
     ("fsi/clamp other held", "expected two parts of one body"),
+    ("fsi/clamp free held", "would still move the particles that go to held: expected its group moving as the first one"),
+    ("fsi/clamp held moving", "would still move the particles that go to moving: expected its group moving as the first one"),
     ("run 0\nfix r held rigid single\nfsi/clamp moving held", "fix r (style rigid) knows its particles already")])
 def test_errors(tmp_path, line, word):
     result = lammps(tmp_path, plate(2, line), materials_fsi="# DATE: 2026-01-01 UNITS: si CITATION: none\nunused fluid rho 1\n")
