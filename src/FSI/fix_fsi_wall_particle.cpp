@@ -38,6 +38,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -90,6 +91,7 @@ void FixFSIWallParticle::init()
   const auto *const preset = fluid->facts().preset;
   linear = pressure == LINEAR || (pressure == AS_PRESET && preset && preset->full);
   movers = fixes_of<FixFSIMove>(lmp);
+  follow_commands();
   fluid_density = 0.0;
   bool densities = false;
   for (const State &s : disc->state) {
@@ -114,6 +116,43 @@ void FixFSIWallParticle::init()
   from_ghosts->add(sum, 0, nsum, {RIGID});
   comm_forward = to_ghosts->size();
   comm_reverse = nsum;
+}
+
+void FixFSIWallParticle::post_run()
+{
+  at_end.clear();
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const v = atom->v[i];
+    if (atom->mask[i] & groupbit && before[i][3] > 0.0)
+      at_end.push_back({atom->tag[i], {v[0], v[1], v[2]}});
+  }
+}
+
+// A command that gives particles another velocity between runs does not accelerate them in a step
+void FixFSIWallParticle::follow_commands()
+{
+  if (!anywhere(!at_end.empty(), world)) return;
+  const auto find_places = [this](const std::vector<Speed> &speeds) {
+    std::map<tagint, const double *> places;
+    for (const Speed &s : speeds) places[s.tag] = s.v;
+    return places;
+  };
+  std::vector<Speed> all = std::move(at_end);
+  at_end.clear();
+  auto place = find_places(all);
+  const auto ran = [&](int i) {
+    return atom->mask[i] & groupbit && before[i][3] > 0.0;
+  };
+  bool gone = false;    // to another rank
+  for (int i = 0; i < atom->nlocal; i++) gone |= ran(i) && !place.count(atom->tag[i]);
+  if (anywhere(gone, world)) {
+    all = gather(all, world);
+    place = find_places(all);
+  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const auto at = place.find(atom->tag[i]); ran(i) && at != place.end())
+      for (int d = 0; d < 3; d++) before[i][d] += atom->v[i][d] - at->second[d];
+  post_run();    // not every init() is that of a run
 }
 
 // 1 for each that there is on any rank; and finds whether such that fluid sticks to are moved

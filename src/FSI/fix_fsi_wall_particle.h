@@ -38,10 +38,11 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIWallParticle(class LAMMPS *, int, char **);
   ~FixFSIWallParticle() override;
-  int setmask() override { return FixConst::PRE_REVERSE; }
+  int setmask() override { return FixConst::PRE_REVERSE | FixConst::POST_RUN; }
   void init() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -61,6 +62,13 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   bool mixed = false;            // several fluids differ in it: each wall particle has a mean
   std::vector<class FixFSIMove *> movers;
   double **before = nullptr;    // velocity at the last step, and whether there was one
+  // at the end of a run
+  struct Speed {
+    tagint tag;
+    double v[3];
+  };
+  std::vector<Speed> at_end;
+  void follow_commands();
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
   std::vector<int> members;                   // the group's particles, local and ghost
