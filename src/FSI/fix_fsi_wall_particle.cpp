@@ -61,6 +61,7 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   fields.set("velocity of the last step", Fields::RESTART, true, before, 4);
   register_fields();
   take_over(id);
+  post_run();    // of what comes out of a restart file, too
 }
 
 // another one of this ID goes on with it
@@ -123,8 +124,7 @@ void FixFSIWallParticle::post_run()
   at_end.clear();
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const v = atom->v[i];
-    if (atom->mask[i] & groupbit && before[i][3] > 0.0)
-      at_end.push_back({atom->tag[i], {v[0], v[1], v[2]}});
+    if (atom->mask[i] & groupbit) at_end.push_back({atom->tag[i], {v[0], v[1], v[2]}});
   }
 }
 
@@ -451,5 +451,5 @@ double FixFSIWallParticle::compute_scalar()
 
 double FixFSIWallParticle::memory_usage()
 {
-  return FixFields::memory_usage() + bytes_of(members);
+  return FixFields::memory_usage() + bytes_of(members, at_end);
 }

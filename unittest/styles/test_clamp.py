@@ -402,6 +402,17 @@ def test_walls_go_on_from_a_restart_file(tmp_path, in_one_rank):
     assert x < 1e-10 and v < 1e-7
 
 
+def test_a_command_after_a_restart_accelerates_no_wall(tmp_path):
+    """From the file all goes on with one velocity more, or without: the same, to round-off."""
+    run(tmp_path / "first", floats() + "run 50\nwrite_restart state.restart", **WALLS)
+    ends, u = [], np.array([3.0, 1.0])
+    for boost in (0.0, 1.0):
+        text = "units si\nread_restart ../first/state.restart\n" + WATER_DECK[1].format(fix=BODIES)
+        text += f"velocity all set {' '.join(map(str, boost * u))} 0 sum yes units box\n"
+        ends.append(run(tmp_path / f"then{boost}", text + watch(every=50) + "run 50", **WALLS).frames()[-1].vector(("vx", "vy")) - boost * u)
+    close(ends[1], ends[0], 1e-9)
+
+
 def test_walls_of_a_run_that_is_stopped(tmp_path):
     """They are left where they were when the step began, with the water."""
     done = run_lammps(tmp_path, floats() + watch(every=1) + "run 20\nfix push water addforce 1e6 0 0\nrun 20", **WALLS)
