@@ -334,13 +334,11 @@ void FixFSI::final_integrate()
   for (auto *p : parts) p->react();
   kick();
   turn();
-  // to where particles are, for computes
-  if (step.walls.any()) step.walls = step.walls.moved(0.5 * update->dt);
+  if (step.walls.any()) step.walls = step.walls.moved(0.5 * update->dt);    // for computes
 }
 
-// The second drift may take particles out of a box that was around them when lists were made. A
-// restart file that is written now could not be read: a shrink-wrapped box goes along, and what
-// leaves a fixed one does so with the next drift
+// The second drift may take particles out of the box, and a restart file could not be read: a
+// shrink-wrapped box goes along, and what leaves a fixed one does so with the next drift
 void FixFSI::end_of_step()
 {
   if (update->ntimestep != output->next_restart || domain->nonperiodic == 0) return;
