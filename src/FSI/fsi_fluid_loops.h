@@ -99,13 +99,28 @@ namespace FSI {
     return next < alone ? alone : next;
   }
 
-  // Powers that terms take from the particles of all pairs visited, and their virial xx yy zz xy xz
-  // yz.
-  struct PairSums {
-    double artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0,
-           virial[6] = {};
-    double guard = 0.0;    // energy that it holds
+  // Powers that terms take from the particles of all pairs visited, the energy that the guard
+  // holds, and their virial xx yy zz xy xz yz; T: as a loop adds them up
+  template <class T> struct Powers {
+    T artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0, guard = 0.0,
+      virial[6];
+    FSI_INLINE Powers()
+    {
+      for (T &w : virial) w = 0.0;
+    }
+    template <class Number> FSI_INLINE void add(const Powers<Number> &by)
+    {
+      using L = Lanes<Number>;
+      artificial += L::sum(by.artificial);
+      laminar += L::sum(by.laminar);
+      coupling += L::sum(by.coupling);
+      walls += L::sum(by.walls);
+      diffusion += L::sum(by.diffusion);
+      guard += L::sum(by.guard);
+      for (int k = 0; k < 6; k++) virial[k] += L::sum(by.virial[k]);
+    }
   };
+  struct PairSums : Powers<double> {};
 
   // How particles of a type count at a fluid particle, if their spacing is another (theory.rst)
   struct VolumeRatio {
@@ -125,7 +140,8 @@ namespace FSI {
     const double *part = nullptr, *rate = nullptr;
   };
 
-  // By pair: how much of it thin bodies leave, of the rows' neighbors from first on (fsi_sight.h)
+  // By pair: how much of it thin bodies leave, of the rows' neighbors from first on (fsi_sight.h);
+  // null: all
   struct Visible {
     const double *part = nullptr;
     const int *first = nullptr;
@@ -143,8 +159,7 @@ namespace FSI {
     const Cut *cut = nullptr;              // null: none is
     // else a pair across ranks is visited on both: each counts half of powers and forces on walls
     bool newton = false;
-    // of pairs of fluids, in loops pair by pair; null: all of each
-    const Visible *visible = nullptr;
+    Visible visible;    // of pairs of fluids, in loops pair by pair
     // Of fluids of several spacings: are these rows of two of them, whose kernel is that of the
     // mean spacing? In steps of shifting rows of one spacing are taken for such, too.
     bool unlike = false;
@@ -156,6 +171,14 @@ namespace FSI {
       return ratio[b].volume != 1.0 && state[a].rho0 == state[b].rho0 &&
           state[a].csq == state[b].csq;
     }
+  };
+
+  // Rows of pairs of a kind, and particles as their loop sees them
+  struct FluidPairs {
+    PairKind kind;
+    RowSpan rows;
+    const Mirror *mirror;    // the rows' neighbors are images in it; null: they are not
+    FluidParticles in;
   };
 
   struct RateLaws {
@@ -195,27 +218,20 @@ namespace FSI {
 
     // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting, times
     // -V_i, to shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the
-    // sums; mirror: the rows' neighbors are images in it; shift, sums: or null; near: becomes the
-    // rows of what is within laws.reach, which are the first of each row from then on, of images
-    // its only ones; or null
-    virtual void rates(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &,
-                       const RateLaws &, double *rate, double *shift, PairSums *sums,
-                       std::vector<Row> *near) const = 0;
+    // sums; shift, sums: or null; near: becomes the rows of what is within laws.reach, which are
+    // the first of each row from then on, of images its only ones; or null
+    virtual void rates(const FluidPairs &, const RateLaws &, double *rate, double *shift,
+                       PairSums *sums, std::vector<Row> *near) const = 0;
     // adds pressure, viscosity and what keeps fluid out of walls to force, rows of
-    // row_of_forces(D); with mirror the sum of the forces on all particles to total[D]
-    virtual void forces(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &,
-                        const ForceLaws &, double *force, double *total, PairSums *sums) const = 0;
+    // row_of_forces(D); of images the sum of the forces on all particles to total[D]
+    virtual void forces(const FluidPairs &, const ForceLaws &, double *force, double *total,
+                        PairSums *sums) const = 0;
     // adds the plain sums of particle shifting alone, times -V_i, to rows of Shift<D>::row(false)
-    virtual void shifts(PairKind, RowSpan, const Mirror *mirror, const FluidParticles &,
-                        double *shift) const = 0;
-    // adds W_ij, by the neighbors' share, to sum; of the neighbors only if both
-    virtual void number_density(PairKind, RowSpan, bool both, const Mirror *mirror,
-                                const FluidParticles &, const double (*x)[3],
-                                double *sum) const = 0;
-    // adds V_j x_ji.grad_i W_ij to sum, likewise
-    virtual void position_divergence(RowSpan, bool both, const Mirror *mirror,
-                                     const FluidParticles &, const double (*x)[3],
-                                     const double *vol, double *sum) const = 0;
+    virtual void shifts(const FluidPairs &, double *shift) const = 0;
+    // adds W_ij, by the neighbors' share, to sum, or with volumes V_j x_ji.grad_i W_ij; to that of
+    // neighbors only if both
+    virtual void distances(const FluidPairs &, bool both, const double (*x)[3], const double *vol,
+                           double *sum) const = 0;
   };
 
   // an error of whoever asks for it

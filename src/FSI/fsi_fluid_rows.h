@@ -32,10 +32,10 @@ namespace FSI {
   // makes the work of the pair force -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures;
   // and the sums of particle shifting
   template <class T, class K, int KIND, int FLAGS>
-  FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror,
-                            const K kernel, const FluidParticles in, const RateLaws laws,
-                            double *const rate, double (*const shift)[shift_row<K::DIM>(FLAGS)],
-                            PairSums *const sums, std::vector<Row> *const near)
+  FSI_INLINE void rate_rows(const RowSpan rows, const Mirror mirror, const K kernel,
+                            const FluidParticles in, const RateLaws laws, double *const rate,
+                            double (*const shift)[shift_row<K::DIM>(FLAGS)], PairSums *const sums,
+                            std::vector<Row> *const near)
   {
     constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES, FLUID = KIND == WITH_FLUID,
@@ -46,8 +46,7 @@ namespace FSI {
     T reachsq = laws.reach * laws.reach, by_diffusion = 0.0;
     Sieve<T, !IMAGE> sieve;
     ShiftOfRow<T, D, FLUID, FLAGS> shift_of(mirror);
-    for (int n = 0; n < nrows; n++) {
-      const Row row = rows[n];
+    for (const Row row : rows) {
       if (row.n == 0) continue;
       const int i = row.i;
       const Particle<T, D> pi(point[i]);
@@ -96,8 +95,8 @@ namespace FSI {
 
   // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
   template <class T, class K, int KIND, int FLAGS>
-  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const Mirror mirror,
-                             const K kernel, const FluidParticles in, const ForceLaws laws,
+  FSI_INLINE void force_rows(const RowSpan rows, const Mirror mirror, const K kernel,
+                             const FluidParticles in, const ForceLaws laws,
                              double (*const f)[row_of_forces(K::DIM)], double *const total,
                              PairSums *const sums)
   {
@@ -110,8 +109,7 @@ namespace FSI {
     Powers<T> by;
     T on_all[D];
     for (T &w : on_all) w = 0.0;
-    for (int n = 0; n < nrows; n++) {
-      const Row row = rows[n];
+    for (const Row row : rows) {
       if (row.n == 0) continue;
       const int i = row.i, type_j = in.type[row.j[0]];
       const RowConstants constant =
@@ -159,21 +157,20 @@ namespace FSI {
     }
     if (FLAGS & Flag::IMAGES)
       for (int d = 0; d < D; d++) total[d] += L::sum(on_all[d]);
-    if (FLAGS & Flag::SUMS) by.add_to(sums);
+    if (FLAGS & Flag::SUMS) sums->add(by);
   }
 
   // the sums of particle shifting alone
   template <class T, class K, int FLAGS>
-  FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror,
-                             const K kernel, const FluidParticles in,
+  FSI_INLINE void shift_rows(const RowSpan rows, const Mirror mirror, const K kernel,
+                             const FluidParticles in,
                              double (*const shift)[shift_row<K::DIM>(Flag::EDGES)])
   {
     constexpr int D = K::DIM, WITH = (FLAGS & Flag::IMAGES) | Flag::EDGES;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     ShiftOfRow<T, D, (FLAGS & Flag::BOTH) != 0, WITH> shift_of(mirror);
-    for (int n = 0; n < nrows; n++) {
-      const Row row = rows[n];
+    for (const Row row : rows) {
       if (row.n == 0) continue;
       const int i = row.i;
       const Particle<T, D> pi(point[i]);
@@ -200,14 +197,13 @@ namespace FSI {
 
   // W_ij, or V_j x_ji.grad_i W_ij
   template <class T, class K, int FLAGS>
-  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror,
-                                const K kernel, const FluidParticles in, const double (*const x)[3],
+  FSI_INLINE void distance_rows(const RowSpan rows, const Mirror mirror, const K kernel,
+                                const FluidParticles in, const double (*const x)[3],
                                 const double *const vol, double *const sum)
   {
     constexpr int D = K::DIM;
     using L = Lanes<T>;
-    for (int n = 0; n < nrows; n++) {
-      const Row row = rows[n];
+    for (const Row row : rows) {
       if (row.n == 0) continue;
       const int i = row.i;
       // of neighbors of another spacing
@@ -257,20 +253,22 @@ namespace FSI {
     constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
 
     // Density diffusion, with a coefficient of zero where it is off, comes with what is rarely
-    // without: images and slopes. Where shifting fades all rows are in the loops of unequal ones.
-    // Walls and solids are one kind.
+    // without: images and slopes. Where shifting fades all rows are in the loops of unequal ones,
+    // as images of solids are, of which there are few. Walls and solids are one kind.
     struct RatesTable {
       static constexpr int FLAGS =
           IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY | EDGES | FADES;
       static constexpr Compiled ROWS[] = {
-          {WITH_SOLID, 0, IMAGES | UNEQUAL},
-          {WITH_SOLID, SHIFT, IMAGES | UNEQUAL},
-          {WITH_SOLID, SHIFT | EDGES, IMAGES | UNEQUAL},
+          {WITH_SOLID, 0, 0},
+          {WITH_SOLID, UNEQUAL, IMAGES},
+          {WITH_SOLID, SHIFT, 0},
+          {WITH_SOLID, SHIFT | UNEQUAL, IMAGES},
+          {WITH_SOLID, SHIFT | EDGES, 0},
+          {WITH_SOLID, SHIFT | EDGES | UNEQUAL, IMAGES},
           {WITH_SOLID, SHIFT | UNEQUAL | FADES, IMAGES},
           {WITH_SOLID, SHIFT | EDGES | UNEQUAL | FADES, IMAGES},
           {WITH_FLUID, 0, 0},
           {WITH_FLUID, SHIFT | EDGES, 0},
-          {WITH_FLUID, SHIFT | SLOPES, 0},
           {WITH_FLUID, DIFFUSION, SUMS | IMAGES | PARTLY},
           {WITH_FLUID, DIFFUSION | SHIFT | EDGES, SUMS | IMAGES | PARTLY},
           {WITH_FLUID, DIFFUSION | SHIFT | SLOPES, SUMS | PARTLY},
@@ -351,83 +349,83 @@ namespace FSI {
    public:
     explicit FluidLoopsOf(const K &kernel_in) : kernel(kernel_in) {}
 
-    void rates(PairKind kind, const RowSpan rows, const Mirror *image, const FluidParticles &in,
-               const RateLaws &laws, double *rate, double *shift, PairSums *sums,
-               std::vector<Row> *near) const override
+    void rates(const FluidPairs &pairs, const RateLaws &laws, double *rate, double *shift,
+               PairSums *sums, std::vector<Row> *near) const override
     {
       if (near) near->clear();
-      const Mirror mirror = image ? *image : Mirror();
       PairSums unused;
-      if (in.unlike && !sums) sums = &unused;
-      run(kind == WITH_FLUID ? WITH_FLUID : WITH_SOLID,
-          flags_of_rates(kind, image, in, laws, shift, sums), rows, "rates", Flag::RatesTable(),
-          [&](auto number, auto kind_is, auto flags) FSI_INLINE_LAMBDA {
-            rate_rows<decltype(number), K, kind_is(), flags()>(
-                rows.first, rows.size(), mirror, kernel, in, laws, rate,
+      if (pairs.in.unlike && !sums) sums = &unused;
+      run(pairs.kind == WITH_FLUID ? WITH_FLUID : WITH_SOLID,
+          flags_of_rates(pairs, laws, shift, sums), pairs, "rates", Flag::RatesTable(),
+          [&](auto number, const Mirror &mirror, auto kind, auto flags) FSI_INLINE_LAMBDA {
+            rate_rows<decltype(number), K, kind(), flags()>(
+                pairs.rows, mirror, kernel, pairs.in, laws, rate,
                 reinterpret_cast<double(*)[shift_row<D>(flags())]>(shift), sums, near);
           });
     }
 
-    void forces(PairKind kind, const RowSpan rows, const Mirror *image, const FluidParticles &in,
-                const ForceLaws &laws, double *force, double *total, PairSums *sums) const override
+    void forces(const FluidPairs &pairs, const ForceLaws &laws, double *force, double *total,
+                PairSums *sums) const override
     {
-      const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
-      const bool varies = kind == WITH_FLUID && laws.viscosity;
-      const int unequal = kind == WITH_SOLID_FULL ? 0
-          : varies                                ? Flag::UNEQUAL | Flag::VARIES
-                                                  : unequal_or_cut(kind, in);
+      const bool full = pairs.kind == WITH_SOLID_FULL,
+                 varies = pairs.kind == WITH_FLUID && laws.viscosity;
+      const int unequal = full ? 0
+          : varies             ? Flag::UNEQUAL | Flag::VARIES
+                               : unequal_flag(pairs, false);
       PairSums unused;
-      const bool counted = varies || kind == WITH_SOLID_FULL || (image && unequal) || in.unlike ||
-          partly(in);
+      const bool counted = full || pairs.in.visible.part ||
+          (unequal && (varies || pairs.in.unlike || pairs.mirror));
       if (!sums && counted) sums = &unused;
-      run(kind, flags_of_forces(image, unequal, in, laws, sums), rows, "forces",
-          Flag::ForcesTable(), [&](auto number, auto kind_is, auto flags) FSI_INLINE_LAMBDA {
-            force_rows<decltype(number), K, kind_is(), flags()>(rows.first, rows.size(), mirror,
-                                                                kernel, in, laws, f, total, sums);
+      run(pairs.kind, flags_of_forces(pairs, unequal, laws, sums), pairs, "forces",
+          Flag::ForcesTable(),
+          [&](auto number, const Mirror &mirror, auto kind, auto flags) FSI_INLINE_LAMBDA {
+            force_rows<decltype(number), K, kind(), flags()>(pairs.rows, mirror, kernel, pairs.in,
+                                                             laws, f, total, sums);
           });
     }
 
-    void shifts(PairKind kind, const RowSpan rows, const Mirror *image, const FluidParticles &in,
-                double *shift) const override
+    void shifts(const FluidPairs &pairs, double *shift) const override
     {
-      const Mirror mirror = image ? *image : Mirror();
-      const bool fluid = kind == WITH_FLUID;
-      run(fluid ? WITH_FLUID : WITH_SOLID,
-          (image ? Flag::IMAGES : 0) | (fluid ? Flag::BOTH : 0) | partly(in), rows, "shifts",
-          Flag::ShiftsTable(), [&](auto number, auto, auto flags) FSI_INLINE_LAMBDA {
+      const bool fluid = pairs.kind == WITH_FLUID;
+      run(fluid ? WITH_FLUID : WITH_SOLID, flags_of(pairs) | (fluid ? Flag::BOTH : 0), pairs,
+          "shifts", Flag::ShiftsTable(),
+          [&](auto number, const Mirror &mirror, auto, auto flags) FSI_INLINE_LAMBDA {
             shift_rows<decltype(number), K, flags()>(
-                rows.first, rows.size(), mirror, kernel, in,
+                pairs.rows, mirror, kernel, pairs.in,
                 reinterpret_cast<double(*)[shift_row<D>(Flag::EDGES)]>(shift));
           });
     }
 
-    void number_density(PairKind kind, const RowSpan rows, bool both, const Mirror *image,
-                        const FluidParticles &in, const double (*x)[3], double *sum) const override
+    void distances(const FluidPairs &pairs, bool both, const double (*x)[3], const double *vol,
+                   double *sum) const override
     {
-      distances(unequal_or_cut(kind, in), rows, both, image, in, x, nullptr, sum);
-    }
-
-    void position_divergence(const RowSpan rows, bool both, const Mirror *image,
-                             const FluidParticles &in, const double (*x)[3], const double *vol,
-                             double *sum) const override
-    {
-      distances(Flag::DIVERGENCE, rows, both, image, in, x, vol, sum);
+      run(WITH_FLUID,
+          flags_of(pairs) | (vol ? Flag::DIVERGENCE : unequal_flag(pairs, false)) |
+              (both ? Flag::BOTH : 0),
+          pairs, "distances", Flag::DistancesTable(),
+          [&](auto number, const Mirror &mirror, auto, auto flags) FSI_INLINE_LAMBDA {
+            distance_rows<decltype(number), K, flags()>(pairs.rows, mirror, kernel, pairs.in, x,
+                                                        vol, sum);
+          });
     }
 
    private:
-    // calls loop(number, kind, flags) as compiled for these, an error if the table has no such row
+    // calls loop(number, mirror, kind, flags) as compiled for these, an error if the table has no
+    // such row
     template <class Table, class Loop>
-    static void run(int kind, int named, const RowSpan rows, const char *what, Table, Loop loop)
+    static void run(int kind, int named, const FluidPairs &pairs, const char *what, Table,
+                    Loop loop)
     {
-      bool ran = rows.size() == 0;
+      bool ran = pairs.rows.size() == 0;
+      const Mirror mirror = pairs.mirror ? *pairs.mirror : Mirror();
       with_flags<Table::FLAGS>(named, [&](auto flags) {
         const auto with_kind = [&](auto kind_is) {
           if constexpr (is_compiled(Table::ROWS, kind_is(), flags(), ONE_BY_ONE)) {
             if (kind != kind_is()) return;
             ran = true;
             run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
-              loop(number, kind_is, flags);
+              loop(number, mirror, kind_is, flags);
             });
           }
         };
@@ -439,58 +437,46 @@ namespace FSI {
       if (!ran) no_such_loop(what, kind, named);
     }
 
-    static int flags_of_rates(PairKind kind, const Mirror *image, const FluidParticles &in,
-                              const RateLaws &laws, const double *shift, const PairSums *sums)
+    // what all loops have of it
+    static int flags_of(const FluidPairs &pairs)
     {
-      using namespace Flag;
-      const bool fluid = kind == WITH_FLUID,
-                 diffuses = partly(in) ||
-          (fluid && (laws.delta > 0.0 || (shift && laws.fills) || image || in.unlike));
-      const int shifting = !shift ? 0
-          : !laws.fills           ? SHIFT | EDGES
-          : fluid && !image       ? SHIFT | SLOPES
-                                  : SHIFT;
-      return shifting | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0) |
-          (shift && in.fade ? FADES : 0) | (image ? IMAGES : 0) | unequal_or_cut(kind, in) |
-          partly(in);
-    }
-
-    static int flags_of_forces(const Mirror *image, int unequal, const FluidParticles &in,
-                               const ForceLaws &laws, const PairSums *sums)
-    {
-      using namespace Flag;
-      const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
-      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal | partly(in);
-      const bool all = special || ONE_BY_ONE || laws.laminar == CENTRAL_LAMINAR ||
-          (artificial && laws.laminar);
-      return special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0);
+      return (pairs.mirror ? Flag::IMAGES : 0) | (pairs.in.visible.part ? Flag::PARTLY : 0);
     }
 
     // Rows of fluids of two spacings, and of solids and walls of another spacing than the fluid's;
-    // those that have it, among them, have ratios that change nothing.
-    static int unequal(PairKind kind, const FluidParticles &in)
+    // those that have it, among them, have ratios that change nothing. So have those that mirror
+    // walls cut and, in loops of rates, images of solids.
+    static int unequal_flag(const FluidPairs &pairs, bool images)
     {
-      const bool solids = kind == WITH_SOLID || kind == WITH_WALL;
-      return in.unlike || (in.unequal && solids) ? Flag::UNEQUAL : 0;
-    }
-    static int partly(const FluidParticles &in) { return in.visible ? Flag::PARTLY : 0; }
-    // Those that mirror walls cut are in the same loops.
-    static int unequal_or_cut(PairKind kind, const FluidParticles &in)
-    {
-      return in.cut && kind != WITH_FLUID ? Flag::UNEQUAL : unequal(kind, in);
+      const FluidParticles &in = pairs.in;
+      const bool of_solids = pairs.kind != WITH_FLUID && (in.unequal || in.cut || images);
+      return in.unlike || of_solids ? Flag::UNEQUAL : 0;
     }
 
-    void distances(int what, const RowSpan rows, bool both, const Mirror *image,
-                   const FluidParticles &in, const double (*x)[3], const double *vol,
-                   double *sum) const
+    static int flags_of_rates(const FluidPairs &pairs, const RateLaws &laws, const double *shift,
+                              const PairSums *sums)
     {
-      const Mirror mirror = image ? *image : Mirror();
-      run(WITH_FLUID, what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0) | partly(in),
-          rows, "distances", Flag::DistancesTable(),
-          [&](auto number, auto, auto flags) FSI_INLINE_LAMBDA {
-            distance_rows<decltype(number), K, flags()>(rows.first, rows.size(), mirror, kernel, in,
-                                                        x, vol, sum);
-          });
+      using namespace Flag;
+      const bool fluid = pairs.kind == WITH_FLUID, images = pairs.mirror,
+                 diffuses = pairs.in.visible.part ||
+          (fluid && (laws.delta > 0.0 || (shift && laws.fills) || images || pairs.in.unlike));
+      const int shifting = !shift ? 0
+          : !laws.fills           ? SHIFT | EDGES
+          : fluid && !images      ? SHIFT | SLOPES
+                                  : SHIFT;
+      return flags_of(pairs) | shifting | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0) |
+          (shift && pairs.in.fade ? FADES : 0) | unequal_flag(pairs, images);
+    }
+
+    static int flags_of_forces(const FluidPairs &pairs, int unequal, const ForceLaws &laws,
+                               const PairSums *sums)
+    {
+      using namespace Flag;
+      const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
+      const int special = flags_of(pairs) | (sums ? SUMS : 0) | unequal;
+      const bool all = special || ONE_BY_ONE || laws.laminar == CENTRAL_LAMINAR ||
+          (artificial && laws.laminar);
+      return special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0);
     }
   };
 

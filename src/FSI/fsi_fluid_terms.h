@@ -140,7 +140,7 @@ namespace FSI {
   // Kernel or gradient of a pair that a thin body hides in part
   FSI_INLINE double as_visible(const FluidParticles &in, const int *j, double w)
   {
-    return in.visible->part[j - in.visible->first] * w;
+    return in.visible.part[j - in.visible.first] * w;
   }
 
   // Sums of particle shifting that a row of neighbors adds to those of i
@@ -428,25 +428,6 @@ namespace FSI {
     }
     return r;
   }
-
-  // Sums of a loop over rows: powers, virial.
-  template <class T> struct Powers {
-    T artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, guard = 0.0, virial[6];
-    FSI_INLINE Powers()
-    {
-      for (T &w : virial) w = 0.0;
-    }
-    FSI_INLINE void add_to(PairSums *sums) const
-    {
-      using L = Lanes<T>;
-      sums->artificial += L::sum(artificial);
-      sums->laminar += L::sum(laminar);
-      sums->coupling += L::sum(coupling);
-      sums->walls += L::sum(walls);
-      sums->guard += L::sum(guard);
-      for (int k = 0; k < 6; k++) sums->virial[k] += L::sum(virial[k]);
-    }
-  };
 
   // Volumes of fluids and walls in laminar viscosity are those at rest, m/rho0: shifting lets
   // density drift from the number of particles, and m/rho would make viscosity too small twice

@@ -33,12 +33,12 @@ static constexpr double LEFT = 1.0e-4;
 static constexpr int MOST = 2000;    // iterations
 
 const std::vector<double> &ImplicitViscosity::solve(PairSets &pairs,
-                                                    const std::vector<FluidParticles> &of_level,
+                                                    const FluidParticles &particles,
                                                     const ForceLaws &laws, const double *f,
                                                     int columns)
 {
-  disc.dim == 2 ? solve<2>(pairs, of_level, laws, f, columns)
-                : solve<3>(pairs, of_level, laws, f, columns);
+  disc.dim == 2 ? solve<2>(pairs, particles, laws, f, columns)
+                : solve<3>(pairs, particles, laws, f, columns);
   return w;
 }
 
@@ -61,25 +61,24 @@ template <int D> void ImplicitViscosity::begin(const double *f, int columns)
 }
 
 template <int D>
-void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &rows,
-                                  const std::vector<double> &visible, const Mirror *mirror,
-                                  const FluidParticles &in, const ForceLaws &laws)
+void ImplicitViscosity::add_pairs(const PairSet &set, const FluidPairs &pairs,
+                                  const ForceLaws &laws)
 {
-  if (rows.empty() || (set.kind != WITH_FLUID && set.what == PairSet::SOLIDS && laws.solids_slip))
-    return;
+  const FluidParticles &in = pairs.in;
+  const bool fluids = set.kind == WITH_FLUID;
+  if (!fluids && set.what == PairSet::SOLIDS && laws.solids_slip) return;
   const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
-  const Mirror image = mirror ? *mirror : Mirror();
+  const Mirror image = pairs.mirror ? *pairs.mirror : Mirror();
   const auto viscosity = [&](int i) {
     return laws.viscosity ? laws.viscosity[i] : in.state[in.type[i]].viscosity;
   };
-  const bool fluids = set.kind == WITH_FLUID, hidden = set.what == PairSet::HIDDEN;
   if (fluids) {
-    Block block = {&rows, {1.0, 1.0, 1.0}, k.size()};
+    Block block = {pairs.rows, {1.0, 1.0, 1.0}, k.size()};
     for (int d = 0; d < D; d++) block.sign[d] = image.rubbing_sign[d];
     blocks.push_back(block);
   }
   with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
-    for (const Row &row : rows)
+    for (const Row &row : pairs.rows)
       for (const int *j = row.j; j < row.j + row.n; j++) {
         const Point<D> &pi = point[row.i], &pj = point[*j];
         double x[D];
@@ -88,8 +87,8 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
         double g = -kernel.gradient(std::sqrt(FSI::product(x, x))) * pi.rho * pi.vol *
             of_i.inv_rho0 * pj.vol;
         if (of_j.species != SOLID) g *= pj.rho * of_j.inv_rho0;    // as in explicit forces
-        if (mirror && *j == row.i) g *= 0.5;    // it is seen from both sides of the pair
-        if (hidden) g *= visible[j - rows[0].j];
+        if (pairs.mirror && *j == row.i) g *= 0.5;    // it is seen from both sides of the pair
+        if (in.visible.part) g = as_visible(in, j, g);
         if (fluids) {
           const double both = 2.0 * g * between(viscosity(row.i), viscosity(*j));
           k.push_back(both);
@@ -121,7 +120,7 @@ template <int D> void ImplicitViscosity::multiply(std::vector<double> &x, std::v
   std::fill(y.begin(), y.end(), 0.0);
   for (const Block &block : blocks) {
     const double *of_pair = k.data() + block.first;
-    for (const Row &row : *block.rows) {
+    for (const Row &row : block.rows) {
       const double *const xi = &x[D * row.i];
       double sum[D] = {};
       for (const int *j = row.j; j < row.j + row.n; j++) {
@@ -140,16 +139,14 @@ template <int D> void ImplicitViscosity::multiply(std::vector<double> &x, std::v
 }
 
 template <int D>
-void ImplicitViscosity::solve(PairSets &pairs, const std::vector<FluidParticles> &of_level,
+void ImplicitViscosity::solve(PairSets &pairs, const FluidParticles &particles,
                               const ForceLaws &laws, const double *f, int columns)
 {
   const int nlocal = atom->nlocal, *const type = atom->type;
   begin<D>(f, columns);
-  pairs.for_all(step.walls, of_level[0].points,
-                [&](const PairSet &set, const std::vector<Row> &rows,
-                    const std::vector<double> &visible, const Mirror *mirror, int) {
-                  add_pairs<D>(set, rows, visible, mirror, of_level[set.level], laws);
-                });
+  pairs.for_all(step.walls, particles, [&](const PairSet &set, const FluidPairs &of_set, int) {
+    add_pairs<D>(set, of_set, laws);
+  });
   ghosts.add(diagonal.data(), D);
   ghosts.add(given.data(), D);
   const size_t n = w.size();

@@ -43,8 +43,8 @@ namespace FSI {
     }
     // rows of dim numbers of local and ghost particles; f: what else acts, on local ones in rows of
     // `columns` numbers. Pairs and points are those of the forces.
-    const std::vector<double> &solve(PairSets &, const std::vector<FluidParticles> &of_level,
-                                     const ForceLaws &, const double *f, int columns);
+    const std::vector<double> &solve(PairSets &, const FluidParticles &, const ForceLaws &,
+                                     const double *f, int columns);
     double memory_usage() const;
 
    private:
@@ -53,7 +53,7 @@ namespace FSI {
     Ghosts &ghosts;
     // pairs of fluids, with k in the order of the rows
     struct Block {
-      const std::vector<Row> *rows;
+      RowSpan rows;
       double sign[3];    // of an image's velocity
       size_t first;
     };
@@ -61,12 +61,9 @@ namespace FSI {
     std::vector<double> k, diagonal, w, r, p, Ap;
     std::vector<double> driving, given;    // forces without viscosity; with that of what is given
     template <int D>
-    void solve(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &, const double *f,
-               int columns);
+    void solve(PairSets &, const FluidParticles &, const ForceLaws &, const double *f, int columns);
     template <int D> void begin(const double *f, int columns);
-    template <int D>
-    void add_pairs(const PairSet &, const std::vector<Row> &, const std::vector<double> &visible,
-                   const Mirror *, const FluidParticles &, const ForceLaws &);
+    template <int D> void add_pairs(const PairSet &, const FluidPairs &, const ForceLaws &);
     template <int D> void multiply(std::vector<double> &x, std::vector<double> &y);
   };
 

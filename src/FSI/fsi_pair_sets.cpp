@@ -46,6 +46,7 @@ void PairSets::init(const Discretization &disc_in, StepState &step_in, bool full
   beside.clear();
   of_hidden.clear();
   add_sets_of_levels(full);
+  for (auto &set : sets) find_ratios(set);
   if (!disc->sight) return;
   disc->sight->tabulate();
   for (const size_t k : of_two_levels) {
@@ -101,6 +102,32 @@ void PairSets::add_sets_of_levels(bool full)
     }
 }
 
+void PairSets::find_ratios(PairSet &set) const
+{
+  const double dx = disc->levels[set.level].dx;
+  set.ratio.assign(atom->ntypes + 1, VolumeRatio());
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const bool fluid = disc->state[t].species == FLUID, thin = disc->thin[t] != 0.0;
+    const double ratio = disc->dx_of(t) / dx;
+    if (ratio == 1.0 && !thin) continue;
+    if (!fluid) set.unequal = true;
+    set.ratio[t] = {disc->dim == 3 ? ratio * ratio * ratio : ratio * ratio,
+                    fluid ? 0.0 : disc->sharper_of(t, dx), thin};
+  }
+}
+
+FluidPairs PairSets::pairs_of(const PairSet &set, const std::vector<Row> &rows,
+                              const std::vector<double> &visible, const Mirror *mirror,
+                              const FluidParticles &particles)
+{
+  FluidPairs pairs = {set.kind, rows, mirror, particles};
+  pairs.in.ratio = set.ratio.data();
+  pairs.in.unequal = set.unequal;
+  pairs.in.unlike = set.unlike;
+  if (set.what == PairSet::HIDDEN && !rows.empty()) pairs.in.visible = {visible.data(), rows[0].j};
+  return pairs;
+}
+
 bool PairSets::has_rows_with_walls() const
 {
   return std::any_of(sets.begin(), sets.end(), [](const PairSet &set) {
@@ -133,12 +160,6 @@ void PairSets::check() const
                "{} keeps its pairs on its device: what else is found from pairs of particles, as "
                "number densities and shear rates, is not supported with it",
                elsewhere);
-}
-
-void PairSets::begin_step()
-{
-  images_step = -1;
-  near_known = false;
 }
 
 void PairSets::find_reach(bool may_sort)

@@ -40,7 +40,9 @@ namespace FSI {
     PairKind kind = WITH_FLUID;
     size_t level = 0;    // of the fluid particles
     bool unlike = false;
-    double h = 0.0, cut = 0.0, wdx = 0.0;            // of the kernel: W(mean spacing) last
+    std::vector<VolumeRatio> ratio;          // per type
+    bool unequal = false;                    // is any solid or wall of another spacing, or thin?
+    double h = 0.0, cut = 0.0, wdx = 0.0;    // of the kernel: W(mean spacing) last
     std::shared_ptr<FluidLoops> loops, of_forces;    // all; those of forces
     RowList rows;                                    // of the neighbor list
     std::vector<RowList> images;                     // by reflection; walls of particles have none
@@ -70,7 +72,11 @@ namespace FSI {
     double memory_usage() const;
 
     void find_rows(const NeighList *);    // when neighbor lists are new
-    void begin_step();
+    void begin_step()
+    {
+      images_step = -1;
+      near_known = false;
+    }
     void forget_near() { near_known = false; }    // before forces at other positions
     // what thin bodies hide and how much more they count, forces and sums of W, where particles are
     // in this step
@@ -83,20 +89,23 @@ namespace FSI {
     {
       return near_known && set.what != PairSet::HIDDEN ? set.near : set.rows.rows;
     }
-    // Calls loop(set, rows, visible, mirror, reach, near) for all rows, also those of images. The
-    // loop leaves in near, if it is not null, the rows of what is within reach.
-    template <class Loop> void for_rates(const Walls &, const double *places, Loop);
-    // Calls loop(set, number of reflection, mirror) for all rows of images. places: where particles
-    // are, null: at atom->x
-    template <class Loop> void for_images(const Walls &, const double *places, Loop);
-    // Calls loop(set, rows, visible, mirror, k) for all rows, mirror null, and for those of images,
-    // k the number of the reflection.
-    template <class Loop> void for_all(const Walls &, const double *places, Loop);
+    // Particles: where they are, null: at atom->x; what differs from set to set is filled in.
+    // Calls loop(set, pairs, reach, near) for all pairs, also with images. The loop leaves in near,
+    // if it is not null, the rows of what is within reach.
+    template <class Loop> void for_rates(const Walls &, const FluidParticles &, Loop);
+    // Calls loop(set, pairs, k) for those within the support, k the number of an image's reflection
+    template <class Loop> void for_all(const Walls &, const FluidParticles &, Loop);
 
    private:
     const Discretization *disc = nullptr;
     StepState *step = nullptr;
-    void check() const;                              // are the pairs here?
+    void check() const;    // are the pairs here?
+    void find_ratios(PairSet &) const;
+    // of a set, or of its images; visible: what is left of each, where thin bodies may hide some
+    static FluidPairs pairs_of(const PairSet &, const std::vector<Row> &,
+                               const std::vector<double> &visible, const Mirror *,
+                               const FluidParticles &);
+    template <class Loop> void for_images(const Walls &, const FluidParticles &, Loop);
     std::vector<size_t> of_two_levels, of_hidden;    // the sets of two fluids
     std::vector<int> fluid_types, other_types;
     std::vector<char> is_fluid;    // by type
@@ -135,46 +144,47 @@ namespace FSI {
     bool sees(int i, int j, const Walls &, int reflection, const double *places) const;
   };
 
+  // calls loop(set, pairs, k)
   template <class Loop>
-  void PairSets::for_images(const Walls &walls, const double *places, Loop loop)
+  void PairSets::for_images(const Walls &walls, const FluidParticles &particles, Loop loop)
   {
-    check();
     if (!step->wmask || !walls.any()) return;
     // without extent of walls they are the same in all of a step's loops, but that of rates leaves
     // only what is within reach
-    if (images_step != update->ntimestep || walls.finite()) find_images(walls, places);
+    if (images_step != update->ntimestep || walls.finite()) find_images(walls, particles.points);
     images_step = update->ntimestep;
     for (size_t k = 0; k < walls.reflections.size(); k++) {
       const Mirror mirror(walls, walls.reflections[k]);
-      for (auto &set : sets)
-        if (set.what != PairSet::WALLS && !set.images[k].rows.empty()) loop(set, k, &mirror);
+      for (auto &set : sets) {
+        if (set.what == PairSet::WALLS || set.images[k].rows.empty()) continue;
+        loop(set, pairs_of(set, set.images[k].rows, set.visible_images[k], &mirror, particles), k);
+      }
     }
-  }
-
-  template <class Loop> void PairSets::for_all(const Walls &walls, const double *places, Loop loop)
-  {
-    check();
-    const Mirror *const none = nullptr;
-    for (const auto &set : sets) loop(set, set.rows.rows, set.visible, none, 0);
-    for_images(walls, places, [&](const PairSet &set, int k, const Mirror *mirror) {
-      loop(set, set.images[k].rows, set.visible_images[k], mirror, k);
-    });
   }
 
   template <class Loop>
-  void PairSets::for_rates(const Walls &walls, const double *places, Loop loop)
+  void PairSets::for_all(const Walls &walls, const FluidParticles &particles, Loop loop)
   {
-    const Mirror *const none = nullptr;
+    check();
+    for (const auto &set : sets)
+      loop(set, pairs_of(set, near_rows(set), set.visible, nullptr, particles), 0);
+    for_images(walls, particles, loop);
+  }
+
+  template <class Loop>
+  void PairSets::for_rates(const Walls &walls, const FluidParticles &particles, Loop loop)
+  {
+    check();
     // of what thin bodies may hide the order says which part belongs to which pair
     for (auto &set : sets) {
       const bool hidden = set.what == PairSet::HIDDEN;
-      loop(set, sorts || hidden ? set.rows.rows : set.near, set.visible, none, within(set) + margin,
+      const std::vector<Row> &rows = sorts || hidden ? set.rows.rows : set.near;
+      loop(set, pairs_of(set, rows, set.visible, nullptr, particles), within(set) + margin,
            sorts && !hidden ? &set.near : nullptr);
     }
-    for_images(walls, places, [&](PairSet &set, int k, const Mirror *mirror) {
+    for_images(walls, particles, [&](PairSet &set, const FluidPairs &pairs, int k) {
       const bool hidden = set.what == PairSet::HIDDEN;
-      loop(set, set.images[k].rows, set.visible_images[k], mirror, set.reach,
-           hidden ? nullptr : &near_images);
+      loop(set, pairs, set.reach, hidden ? nullptr : &near_images);
       if (!hidden) set.images[k].rows.swap(near_images);
     });
     near_known = true;

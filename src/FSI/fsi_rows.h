@@ -46,6 +46,8 @@ namespace FSI {
     RowSpan(const Row *begin, const Row *end) : first(begin), last(end) {}
     RowSpan(const std::vector<Row> &all) : first(all.data()), last(first + all.size()) {}
     int size() const { return last - first; }
+    const Row *begin() const { return first; }
+    const Row *end() const { return last; }
   };
 
   // Rows and, where they are not those of LAMMPS' neighbor list, their neighbors.

@@ -56,7 +56,7 @@ template <int D> struct Sums {
 
 // OF_FLUIDS: the neighbors take part, too
 template <class T, class K, bool IMAGES, bool OF_FLUIDS>
-static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K &kernel,
+static void add_rows(const RowSpan rows, const Mirror &mirror, const K &kernel,
                      const FluidParticles &in, const ForceLaws &laws, double *sums)
 {
   constexpr int D = K::DIM, ROW = Sums<D>::ROW;
@@ -89,7 +89,7 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
         if (!OF_FLUIDS) g = cut_off(in, j, g);
         if (IMAGES) g = weight * g;
         if constexpr (std::is_same_v<Number, double>)
-          if (in.visible) g = as_visible(in, j, g);
+          if (in.visible.part) g = as_visible(in, j, g);
         Sums<D>::of_pair(g, x, v, part);
         for (int k = 0; k < ROW; k++) of_i[k] += part[k];
         if (!OF_FLUIDS) return;
@@ -108,7 +108,7 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
 // adds V_i V_j W_ij (L_i - L_j), L = grad v as far as both are known, to the sums of both; an image
 // has the signs of its walls
 template <class T, class K, bool IMAGES, int D = K::DIM, int ROW>
-static void add_differences(const std::vector<Row> &rows, const Mirror &mirror, const K &kernel,
+static void add_differences(const RowSpan rows, const Mirror &mirror, const K &kernel,
                             const FluidParticles &in, const double *L, double (*const sum)[ROW])
 {
   constexpr int N = numbers_of(D);
@@ -135,7 +135,7 @@ static void add_differences(const std::vector<Row> &rows, const Mirror &mirror, 
         Number w =
             weight * kernel.W(root(product(x, x))) * (pi.vol * Li[N - 1]) * (pj.vol * of_j(N - 1));
         if constexpr (std::is_same_v<Number, double>)
-          if (in.visible) w = as_visible(in, j, w);
+          if (in.visible.part) w = as_visible(in, j, w);
         for (int k = 0; k < D * D; k++) {
           const Number Lj = of_j(k);
           of_i[k] += w * (Li[k] - sign[k] * Lj);
@@ -155,54 +155,47 @@ bool Shear::varies() const
          });
 }
 
-void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &of_level,
-                           const ForceLaws &laws)
+void Shear::find_gradients(PairSets &pairs, const FluidParticles &particles, const ForceLaws &laws)
 {
-  disc.dim == 2 ? find_gradients<2>(pairs, of_level, laws)
-                : find_gradients<3>(pairs, of_level, laws);
+  disc.dim == 2 ? find_gradients<2>(pairs, particles, laws)
+                : find_gradients<3>(pairs, particles, laws);
 }
 
-// calls loop(number, kernel, image, rows, mirror, particles, set) for all sets of pairs
+// calls loop(number, kernel, image, mirror, pairs, set) for all sets of pairs
 template <int D, class Loop>
-void Shear::for_rows(PairSets &pairs, const std::vector<FluidParticles> &of_level, Loop loop) const
+void Shear::for_rows(PairSets &pairs, const FluidParticles &particles, Loop loop) const
 {
-  pairs.for_all(step.walls, of_level[0].points,
-                [&](const PairSet &set, const std::vector<Row> &rows,
-                    const std::vector<double> &visible, const Mirror *mirror, int) {
-                  if (rows.empty()) return;
-                  FluidParticles in = of_level[set.level];
-                  const Visible seen = {visible.data(), rows[0].j};
-                  if (set.what == PairSet::HIDDEN) in.visible = &seen;
-                  with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
-                    if constexpr (std::decay_t<decltype(kernel)>::DIM == D) {
-                      const auto with = [&](auto number) {
-                        mirror ? loop(number, kernel, std::true_type(), rows, *mirror, in, set)
-                               : loop(number, kernel, std::false_type(), rows, Mirror(), in, set);
-                      };
-                      have_packs() && !in.visible ? with(Pack()) : with(0.0);
-                    }
-                  });
-                });
+  pairs.for_all(step.walls, particles, [&](const PairSet &set, const FluidPairs &of_set, int) {
+    with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
+      if constexpr (std::decay_t<decltype(kernel)>::DIM == D) {
+        const auto with = [&](auto number) {
+          of_set.mirror ? loop(number, kernel, std::true_type(), *of_set.mirror, of_set, set)
+                        : loop(number, kernel, std::false_type(), Mirror(), of_set, set);
+        };
+        have_packs() && !of_set.in.visible.part ? with(Pack()) : with(0.0);
+      }
+    });
+  });
 }
 
 template <int D>
-void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &of_level,
-                           const ForceLaws &laws)
+void Shear::find_gradients(PairSets &pairs, const FluidParticles &particles, const ForceLaws &laws)
 {
   constexpr int ROW = Sums<D>::ROW, N = Sym<D>::N;
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
   sums.assign((size_t) ROW * nall, 0.0);
   gradients.assign((size_t) numbers_of(D) * nall, 0.0);
-  for_rows<D>(pairs, of_level,
-              [&](auto number, const auto &kernel, auto image, const std::vector<Row> &rows,
-                  const Mirror &mirror, const FluidParticles &in, const PairSet &set) {
+  for_rows<D>(pairs, particles,
+              [&](auto number, const auto &kernel, auto image, const Mirror &mirror,
+                  const FluidPairs &of_set, const PairSet &set) {
                 using T = decltype(number);
                 using K = std::decay_t<decltype(kernel)>;
                 // no fluid beyond solids that slip
                 if (set.what == PairSet::SOLIDS && laws.solids_slip) return;
-                set.kind == WITH_FLUID
-                    ? add_rows<T, K, image(), true>(rows, mirror, kernel, in, laws, sums.data())
-                    : add_rows<T, K, image(), false>(rows, mirror, kernel, in, laws, sums.data());
+                (set.kind == WITH_FLUID ? add_rows<T, K, image(), true>
+                                        : add_rows<T, K, image(), false>) (of_set.rows, mirror,
+                                                                           kernel, of_set.in, laws,
+                                                                           sums.data());
               });
   ghosts.add(sums.data(), ROW);
   for (int i = 0; i < nlocal; i++) {
@@ -220,23 +213,23 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
         for (int c = 0; c < D; c++) L[a * D + b] += s[N + a * D + c] * C[c * D + b] / det;
     L[D * D] = std::min(1.0, 2.0 * part);
   }
-  sharpen<D>(pairs, of_level);
+  sharpen<D>(pairs, particles);
 }
 
 // What the kernel has smoothed is undone to first order (van Cittert; Stolz and Adams 1999):
 //   grad v_i += sum_j V_j W_ij (grad v_i - grad v_j)  over fluids and their images, as far as both
 // gradients are known
-template <int D> void Shear::sharpen(PairSets &pairs, const std::vector<FluidParticles> &of_level)
+template <int D> void Shear::sharpen(PairSets &pairs, const FluidParticles &particles)
 {
   constexpr int ROW = D == 2 ? 4 : 12;    // the gradient by its components
   ghosts.send(gradients.data(), numbers_of(D));
   sums.assign((size_t) ROW * (atom->nlocal + atom->nghost), 0.0);
-  for_rows<D>(pairs, of_level,
-              [&](auto number, const auto &kernel, auto image, const std::vector<Row> &rows,
-                  const Mirror &mirror, const FluidParticles &in, const PairSet &set) {
+  for_rows<D>(pairs, particles,
+              [&](auto number, const auto &kernel, auto image, const Mirror &mirror,
+                  const FluidPairs &of_set, const PairSet &set) {
                 if (set.kind == WITH_FLUID)
                   add_differences<decltype(number), std::decay_t<decltype(kernel)>, image()>(
-                      rows, mirror, kernel, in, gradients.data(),
+                      of_set.rows, mirror, kernel, of_set.in, gradients.data(),
                       reinterpret_cast<double(*)[ROW]>(sums.data()));
               });
   ghosts.add(sums.data(), ROW);
@@ -273,10 +266,10 @@ void Shear::stress(int i, double eta, double *sigma) const
     for (int b = a; b < D; b++) sigma[Sym<3>::id(a, b)] = eta * (L[a * D + b] + L[b * D + a]);
 }
 
-void Shear::find_viscosities(PairSets &pairs, const std::vector<FluidParticles> &of_level,
+void Shear::find_viscosities(PairSets &pairs, const FluidParticles &particles,
                              const ForceLaws &laws)
 {
-  find_gradients(pairs, of_level, laws);
+  find_gradients(pairs, particles, laws);
   viscosity.resize(atom->nlocal + atom->nghost);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = disc.state[atom->type[i]];

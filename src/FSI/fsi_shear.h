@@ -43,15 +43,14 @@ namespace FSI {
     // what no-slip walls and solids have beyond their face, exact for linear fields,
     //   grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,  g_ij = grad_i W_ij
     // (Randles and Libersky 1996), without the kernel's smoothing. 0 where neighbors are too few.
-    void find_gradients(PairSets &, const std::vector<FluidParticles> &of_level,
-                        const ForceLaws &laws);
+    void find_gradients(PairSets &, const FluidParticles &, const ForceLaws &);
     const double *gradient(int i) const;
     double rate(int i) const;                               // sqrt(2 D:D)
     void stress(int i, double eta, double *sigma) const;    // 2 eta D, as xx yy zz xy xz yz
 
     double viscosity_of(int i) const;    // at rate(i)
     // of local and ghost particles; those of fluids without such a law are constant
-    void find_viscosities(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &);
+    void find_viscosities(PairSets &, const FluidParticles &, const ForceLaws &);
     const double *viscosities() const { return viscosity.data(); }
     double memory_usage() const { return bytes_of(sums, gradients, viscosity); }
 
@@ -61,11 +60,9 @@ namespace FSI {
     Ghosts &ghosts;
     const double eddies;
     std::vector<double> sums, gradients, viscosity;
-    template <int D>
-    void find_gradients(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &);
-    template <int D> void sharpen(PairSets &, const std::vector<FluidParticles> &);
-    template <int D, class Loop>
-    void for_rows(PairSets &, const std::vector<FluidParticles> &, Loop) const;
+    template <int D> void find_gradients(PairSets &, const FluidParticles &, const ForceLaws &);
+    template <int D> void sharpen(PairSets &, const FluidParticles &);
+    template <int D, class Loop> void for_rows(PairSets &, const FluidParticles &, Loop) const;
   };
 
 }    // namespace FSI

@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -109,11 +110,6 @@ std::vector<char> LightSolids::types() const
   return light;
 }
 
-bool LightSolids::resisted() const
-{
-  return step.substeps > 1 && (viscous || any());
-}
-
 bool LightSolids::any() const
 {
   if (step.substeps <= 1) return false;
@@ -123,15 +119,20 @@ bool LightSolids::any() const
 
 // use(i, j, x_ij, k, eta) for pairs of a fluid and a solid, whose change of velocity w within the
 // step changes the force on the fluid by k x_ij (x_ij.w), if it is light, + eta w
-template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, Use use) const
+template <class Use>
+void LightSolids::for_wet_pairs(const PairSets &sets, const FluidParticles &particles,
+                                Use use) const
 {
   static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
   const int *const type = atom->type;
   const std::vector<char> light = types();
   for_levels(disc, [&](size_t level, const auto &kernel) {
-    const FluidParticles &in = fluid.of_level[level];
+    constexpr int D = std::decay_t<decltype(kernel)>::DIM;
+    const PairSet &set = sets.of(level, PairSet::SOLIDS);
+    FluidParticles in = particles;
+    in.ratio = set.ratio.data();
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
-    for (const Row &row : fluid.sets.of(level, PairSet::SOLIDS).rows.rows) {
+    for (const Row &row : set.rows.rows) {
       const int i = row.i, t = type[row.j[0]];
       if (!light[t] && !viscous) continue;
       const State &s = disc.state[type[i]];
@@ -152,52 +153,44 @@ template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, 
   });
 }
 
-void LightSolids::find_impedances(const Fluid &fluid)
-{
-  disc.dim == 2 ? find_impedances<2>(fluid) : find_impedances<3>(fluid);
-}
-
-template <int D> void LightSolids::find_impedances(const Fluid &fluid)
+void LightSolids::find_impedances(const PairSets &sets, const FluidParticles &particles)
 {
   auto *const z = step.impedance, *const w = step.swerve;
   for (auto *rows : {z, z + 3, w})
     for (int d = 0; d < 3; d++) rows[d].assign(atom->nlocal + atom->nghost, 0.0);
-  for_wet_pairs<D>(fluid, [&](int, int j, const double(&x)[D], double k, double eta) {
-    for (int a = 0; a < D; a++)
-      for (int b = a; b < D; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b] + (a == b) * eta;
+  for_wet_pairs(sets, particles, [&](int, int j, const auto &x, double k, double eta) {
+    const int dim = std::size(x);
+    for (int a = 0; a < dim; a++)
+      for (int b = a; b < dim; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b] + (a == b) * eta;
   });
-  for (int a = 0; a < D; a++)
-    for (int b = a; b < D; b++) ghosts.add(z[Sym<3>::id(a, b)].data());
+  for (int a = 0; a < disc.dim; a++)
+    for (int b = a; b < disc.dim; b++) ghosts.add(z[Sym<3>::id(a, b)].data());
 }
 
-void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *> &measures)
+void LightSolids::react(const PairSets &sets, const FluidParticles &particles,
+                        const std::vector<ComputeFSIForce *> &measures)
 {
-  disc.dim == 2 ? react<2>(fluid, measures) : react<3>(fluid, measures);
-}
-
-template <int D>
-void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *> &measures)
-{
-  std::vector<double> more[D];
+  const int dim = disc.dim;
+  std::vector<double> more[3];
   auto &w = step.swerve;
-  for (int d = 0; d < D; d++) {
+  for (int d = 0; d < dim; d++) {
     ghosts.send(w[d].data());
     more[d].assign(w[d].size(), 0.0);
   }
-  for_wet_pairs<D>(fluid, [&](int i, int j, const double(&x)[D], double k, double) {
-    for (int a = 0; a < D; a++)
-      for (int b = 0; b < D; b++) {
+  for_wet_pairs(sets, particles, [&](int i, int j, const auto &x, double k, double) {
+    for (size_t a = 0; a < std::size(x); a++)
+      for (size_t b = 0; b < std::size(x); b++) {
         more[a][i] += k * x[a] * x[b] * w[b][j];
         more[a][j] -= k * x[a] * x[b] * w[b][j];
       }
   });
-  for (auto &of : more) ghosts.add(of.data());
+  for (int d = 0; d < dim; d++) ghosts.add(more[d].data());
   double power = 0.0;    // that on solids is counted in their sub-steps
   for (int i = 0; i < atom->nlocal; i++) {
     const bool counts =
         (atom->mask[i] & disc.mover->groupbit) && disc.state[atom->type[i]].species == FLUID;
     double f[3] = {};
-    for (int d = 0; d < D; d++) {
+    for (int d = 0; d < dim; d++) {
       atom->f[i][d] += f[d] = more[d][i];
       if (counts)
         power += f[d] *

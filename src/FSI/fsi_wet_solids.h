@@ -63,16 +63,13 @@ namespace FSI {
         disc(disc), step(step), ledger(ledger), ghosts(ghosts), viscous(viscous)
     {
     }
-    // what its pairs are, and the fluid particles by level as the loop of forces has them
-    struct Fluid {
-      const PairSets &sets;
-      const std::vector<FluidParticles> &of_level;
-    };
     bool any() const;
-    bool resisted() const;
-    void find_impedances(const Fluid &);
+    bool resisted() const { return step.substeps > 1 && (viscous || any()); }
+    // particles are those of the loop of forces
+    void find_impedances(const PairSets &, const FluidParticles &);
     // the reaction: what solids have not got of the impulse, fluids have not given
-    void react(const Fluid &, const std::vector<ComputeFSIForce *> &measures);
+    void react(const PairSets &, const FluidParticles &,
+               const std::vector<ComputeFSIForce *> &measures);
 
    private:
     const Discretization &disc;
@@ -81,9 +78,7 @@ namespace FSI {
     Ghosts &ghosts;
     const bool viscous;
     std::vector<char> types() const;
-    template <int D, class Use> void for_wet_pairs(const Fluid &, Use) const;
-    template <int D> void find_impedances(const Fluid &);
-    template <int D> void react(const Fluid &, const std::vector<ComputeFSIForce *> &);
+    template <class Use> void for_wet_pairs(const PairSets &, const FluidParticles &, Use) const;
   };
 
 }    // namespace FSI

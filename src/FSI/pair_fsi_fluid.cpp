@@ -47,13 +47,6 @@ using namespace FSI;
 
 static const std::vector<std::string> coupling_names = {"wall", "full"};    // Couple
 
-// Of fluid particles of a level, per type: how its particles count, where it pushes fluid off
-struct PairFSIFluid::LevelRatios {
-  std::vector<VolumeRatio> of_type;
-  bool unequal = false;    // is any solid or wall of another spacing than the fluid, or thin?
-  std::vector<Contact> guards;
-};
-
 struct PairFSIFluid::Members {
   Fields fields;
   PairSets pairs;
@@ -63,9 +56,7 @@ struct PairFSIFluid::Members {
   std::optional<Shear> shear;
   std::optional<ImplicitViscosity> implicit;
   WallShift wall_shift;
-  // what loops get the address of
-  Thin thin_bodies = {};
-  Visible seen_pairs = {};
+  Thin thin_bodies = {};    // loops get its address
   explicit Members(LAMMPS *lmp) : fields(lmp), pairs(lmp) {}
 };
 
@@ -288,7 +279,6 @@ void PairFSIFluid::init_style()
   });
   step->viscosity = nullptr;
   step->threads = nullptr;
-  find_ratios();
   const bool mirrors = any_is(fixes_of<Part>(lmp), &Facts::mirror_walls);
   take_virial(force->pair != this && mirrors ? force->pair : nullptr);
   double &ghosts = comm->cutghostuser;    // 0: LAMMPS chooses; too small: fix fsi says so
@@ -299,24 +289,6 @@ void PairFSIFluid::init_style()
   raised_ghosts = ghosts;
   open_ends = has_open_ends(lmp);
   fix_stress = first_of(fixes_of<FixFSIStress>(lmp));
-}
-
-void PairFSIFluid::find_ratios()
-{
-  ratios.assign(disc->levels.size(), LevelRatios());
-  for (size_t l = 0; l < ratios.size(); l++) {
-    LevelRatios &of = ratios[l];
-    const double dx = disc->levels[l].dx;
-    of.of_type.assign(atom->ntypes + 1, VolumeRatio());
-    for (int t = 1; t <= atom->ntypes; t++) {
-      const bool fluid = material[t].species == FLUID, thin = disc->thin[t] != 0.0;
-      const double ratio = disc->dx_of(t) / dx;
-      if (ratio == 1.0 && !thin) continue;
-      if (!fluid) of.unequal = true;
-      of.of_type[t] = {disc->dim == 3 ? ratio * ratio * ratio : ratio * ratio,
-                       fluid ? 0.0 : disc->sharper_of(t, dx), thin};
-    }
-  }
 }
 
 Facts PairFSIFluid::facts() const
@@ -526,22 +498,10 @@ void PairFSIFluid::advance_density()
   });
 }
 
-// fluid particles by level, as the last loop had them
-std::vector<FluidParticles> PairFSIFluid::particles_of_levels()
-{
-  const FluidParticles particles = particles_at(points.data());
-  std::vector<FluidParticles> of_levels;
-  for (size_t l = 0; l < ratios.size(); l++) {
-    of_levels.push_back(particles);
-    of_levels[l].ratio = ratios[l].of_type.data();
-  }
-  return of_levels;
-}
-
 void PairFSIFluid::integrate_substeps()
 {
   if (members->light_solids->resisted())
-    members->light_solids->find_impedances({pairs, particles_of_levels()});
+    members->light_solids->find_impedances(pairs, particles_at(points.data()));
 }
 
 // The ledger's powers have velocities of the start of the step. With those of its middle, which are
@@ -550,7 +510,7 @@ void PairFSIFluid::integrate_substeps()
 void PairFSIFluid::react()
 {
   if (members->light_solids->any())
-    members->light_solids->react({pairs, particles_of_levels()}, force_computes);
+    members->light_solids->react(pairs, particles_at(points.data()), force_computes);
   if (!ledger->kept || taken.empty()) return;
   disc->dim == 2 ? correct_powers<2>() : correct_powers<3>();
 }
@@ -607,11 +567,10 @@ Contact PairFSIFluid::guard_of(int t, double dx) const
 
 void PairFSIFluid::find_guards()
 {
-  for (size_t l = 0; l < ratios.size(); l++) {
-    ratios[l].guards.clear();
+  guards.assign(disc->levels.size(), {});
+  for (size_t l = 0; l < guards.size(); l++)
     for (size_t t = 0; t < disc->state.size(); t++)
-      ratios[l].guards.push_back(guard_of(t, disc->levels[l].dx));
-  }
+      guards[l].push_back(guard_of(t, disc->levels[l].dx));
 }
 
 FluidParticles PairFSIFluid::particles_at(const double *points)
@@ -626,20 +585,6 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
           backfill ? &members->thin_bodies : nullptr,
           members->cut_solids->of_particles(),
           force->newton_pair != 0};
-}
-
-FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, const PairSet &set,
-                                     const std::vector<Row> &list_of,
-                                     const std::vector<double> &parts_of)
-{
-  FluidParticles in = particles;
-  in.ratio = ratios[set.level].of_type.data();
-  in.unequal = ratios[set.level].unequal;
-  in.unlike = set.unlike;
-  if (set.what != PairSet::HIDDEN) return in;
-  members->seen_pairs = {parts_of.data(), list_of.empty() ? nullptr : list_of[0].j};
-  in.visible = &members->seen_pairs;
-  return in;
 }
 
 template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, Complete complete)
@@ -698,19 +643,16 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   RateLaws laws = {delta, pressure_over_density.data(), 0.0, members->wall_shift, fills(), 0.0};
   double *const shift = step->shifts ? step->shift[0] : nullptr;
   PairSums sums;
-  pairs.for_rates(walls, particles.points,
-                  [&](const PairSet &set, const std::vector<Row> &rows,
-                      const std::vector<double> &visible, const Mirror *mirror, double reach,
-                      std::vector<Row> *near) {
-                    FluidParticles in = of_rows(particles, set, rows, visible);
+  pairs.for_rates(walls, particles,
+                  [&](const PairSet &set, FluidPairs of_set, double reach, std::vector<Row> *near) {
                     if (shift && fade) {
-                      in.fade = fade;
-                      in.unlike = true;
+                      of_set.in.fade = fade;
+                      of_set.in.unlike = true;
                     }
                     laws.wdx = set.wdx;
                     laws.reach = reach;
-                    set.loops->rates(set.kind, rows, mirror, in, laws, rate, shift,
-                                     ledger->kept ? &sums : nullptr, near);
+                    set.loops->rates(of_set, laws, rate, shift, ledger->kept ? &sums : nullptr,
+                                     near);
                   });
   // Neighbors' rates ride behind the sums of shifting, which are added to memory in fours: of their
   // own they would be one more load, addition and store for each pair of the dearest loop.
@@ -742,39 +684,23 @@ template <int D, bool FILLS> void PairFSIFluid::displacements(double dt)
   }
 }
 
-struct PairFSIFluid::Rows {
-  const PairSet &set;
-  const std::vector<Row> &rows;
-  const Mirror *mirror;
-  FluidParticles in;
-};
-
-// sums of what depends on the distance of a pair, walls' images included: calls sum() for all Rows
-template <class Sum> void PairFSIFluid::distance_sums(const FluidParticles &particles, Sum sum)
-{
-  pairs.for_all(step->walls, nullptr,
-                [&](const PairSet &m, const std::vector<Row> &rows,
-                    const std::vector<double> &visible, const Mirror *mirror, int) {
-                  sum(Rows{m, rows, mirror, of_rows(particles, m, rows, visible)});
-                });
-}
-
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
-  distance_sums(particles_at(nullptr), [&](const Rows &r) {
-    const bool both = r.set.kind == WITH_FLUID || solids_too;
-    r.set.loops->number_density(r.set.kind, r.rows, both, r.mirror, r.in, vectors(atom->x), psi);
-  });
+  pairs.for_all(step->walls, particles_at(nullptr),
+                [&](const PairSet &set, const FluidPairs &of_set, int) {
+                  const bool both = set.kind == WITH_FLUID || solids_too;
+                  set.loops->distances(of_set, both, vectors(atom->x), nullptr, psi);
+                });
 }
 
 void PairFSIFluid::add_position_divergence(double *div)
 {
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
-  distance_sums(particles_at(nullptr), [&](const Rows &r) {
-    r.set.loops->position_divergence(r.rows, r.set.kind == WITH_FLUID, r.mirror, r.in,
-                                     vectors(atom->x), volume.data(), div);
-  });
+  pairs.for_all(
+      step->walls, particles_at(nullptr), [&](const PairSet &set, const FluidPairs &of_set, int) {
+        set.loops->distances(of_set, set.kind == WITH_FLUID, vectors(atom->x), volume.data(), div);
+      });
 }
 
 void PairFSIFluid::add_gradient_sum(double *s)
@@ -792,8 +718,8 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
     p.vol = 1.0 / disc->resolution[type[i]].psi_bulk;
   });
   std::vector<double> sums(ROW * nall, 0.0);
-  distance_sums(particles, [&](const Rows &r) {
-    r.set.loops->shifts(r.set.kind, r.rows, r.mirror, r.in, sums.data());
+  pairs.for_all(step->walls, particles, [&](const PairSet &set, const FluidPairs &of_set, int) {
+    set.loops->shifts(of_set, sums.data());
   });
   for (size_t i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d] / -volume_of<D>(i);
@@ -879,11 +805,11 @@ ForceLaws PairFSIFluid::laws_of_forces()
 }
 
 // where the last gather() was
-void PairFSIFluid::find_viscosities(const std::vector<FluidParticles> &of_level, ForceLaws &laws)
+void PairFSIFluid::find_viscosities(const FluidParticles &particles, ForceLaws &laws)
 {
   Shear &shear = *members->shear;
   const bool found = laminar && shear.varies();
-  if (found) shear.find_viscosities(pairs, of_level, laws);
+  if (found) shear.find_viscosities(pairs, particles, laws);
   step->viscosity = laws.viscosity = found ? shear.viscosities() : nullptr;
 }
 
@@ -892,7 +818,7 @@ const Shear &PairFSIFluid::find_shear()
   const auto no_more = [](int, const auto &) {
   };
   disc->dim == 2 ? gather<2>(0.0, no_more) : gather<3>(0.0, no_more);
-  members->shear->find_gradients(pairs, particles_of_levels(), laws_of_forces());
+  members->shear->find_gradients(pairs, particles_at(points.data()), laws_of_forces());
   return *members->shear;
 }
 
@@ -924,9 +850,8 @@ template <int D> void PairFSIFluid::compute_forces()
   });
 
   if (ledger->kept) taken.assign((size_t) row_of_points(D) * nall, 0.0);
-  const std::vector<FluidParticles> of_level = particles_of_levels();
   ForceLaws viscous = laws_of_forces();
-  find_viscosities(of_level, viscous);
+  find_viscosities(particles, viscous);
   ForceLaws laws = viscous;
   if (implicit) {    // by itself, when the other forces are there
     laws.laminar = NO_LAMINAR;
@@ -934,22 +859,15 @@ template <int D> void PairFSIFluid::compute_forces()
   }
   PairSums sums, *const of_pairs = ledger->kept || tally_pairs ? &sums : nullptr;
   double guarding[PairSet::NKINDS] = {};
-  const auto loop = [&](const PairSet &set, const std::vector<Row> &rows,
-                        const std::vector<double> &visible, const Mirror *mirror, double *total) {
+  pairs.for_all(step->walls, particles, [&](const PairSet &set, const FluidPairs &of_set, int k) {
     const double before = sums.guard;
-    laws.guard = ratios[set.level].guards.data();
-    set.of_forces->forces(set.kind, rows, mirror, of_rows(particles, set, rows, visible), laws,
-                          forces.data(), total, of_pairs);
+    double total[D] = {};
+    laws.guard = guards[set.level].data();
+    set.of_forces->forces(of_set, laws, forces.data(), total, of_pairs);
     guarding[set.what] += sums.guard - before;
-  };
-  for (const auto &set : pairs.sets) loop(set, pairs.near_rows(set), set.visible, nullptr, nullptr);
-  pairs.for_images(step->walls, particles.points,
-                   [&](const PairSet &set, int k, const Mirror *mirror) {
-                     double total[D] = {};
-                     loop(set, set.images[k].rows, set.visible_images[k], mirror, total);
-                     add_wall_forces(step->walls.reflections[k], total);
-                   });
-  if (implicit) add_implicit_viscosity<D>(of_level, viscous, of_pairs);
+    if (of_set.mirror) add_wall_forces(step->walls.reflections[k], total);
+  });
+  if (implicit) add_implicit_viscosity<D>(particles, viscous, of_pairs);
   split_forces<D>(particles, viscous);
   pairs.forget_near();    // a second force evaluation at other positions must not use these lists
 
@@ -985,16 +903,12 @@ void PairFSIFluid::add_viscous_forces(const FluidParticles &particles, ForceLaws
   laws.taken = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
-  pairs.for_all(step->walls, particles.points,
-                [&](const PairSet &m, const std::vector<Row> &rows,
-                    const std::vector<double> &visible, const Mirror *mirror, int k) {
-                  const bool of_fluids = m.what != PairSet::SOLIDS && m.what != PairSet::WALLS;
-                  if (on_bodies && of_fluids) return;
-                  double total[D] = {};
-                  m.of_forces->forces(m.kind, rows, mirror, of_rows(particles, m, rows, visible),
-                                      laws, viscous_forces.data(), total, sums);
-                  if (mirror && !on_bodies) add_wall_forces(step->walls.reflections[k], total);
-                });
+  pairs.for_all(step->walls, particles, [&](const PairSet &set, const FluidPairs &of_set, int k) {
+    if (on_bodies && set.kind == WITH_FLUID) return;
+    double total[D] = {};
+    set.of_forces->forces(of_set, laws, viscous_forces.data(), total, sums);
+    if (of_set.mirror && !on_bodies) add_wall_forces(step->walls.reflections[k], total);
+  });
 }
 
 // for those who ask for them, forces of viscosity on solids and walls
@@ -1012,15 +926,14 @@ void PairFSIFluid::split_forces(const FluidParticles &particles, const ForceLaws
 
 // those of the velocities that it leaves at the end of the step
 template <int D>
-void PairFSIFluid::add_implicit_viscosity(const std::vector<FluidParticles> &of_level,
-                                          ForceLaws laws, PairSums *sums)
+void PairFSIFluid::add_implicit_viscosity(const FluidParticles &particles, ForceLaws laws,
+                                          PairSums *sums)
 {
-  const FluidParticles &particles = of_level[0];
   constexpr int ROW = row_of_forces(D);
   std::vector<double> others = forces;
   ghosts->add(others.data(), ROW);
   const std::vector<double> &w =
-      members->implicit->solve(pairs, of_level, laws, others.data(), ROW);
+      members->implicit->solve(pairs, particles, laws, others.data(), ROW);
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
   for (size_t i = 0; i < w.size() / D; i++)
     for (int d = 0; d < D; d++) point[i].v[d] = w[D * i + d];

@@ -120,10 +120,8 @@ class PairFSIFluid : public PairFSI {
   bool has_all_pairs() const;
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
-  std::vector<double> taken;          // by coupling and friction, if there is a ledger
-  struct LevelRatios;                 // how bodies count at fluid particles
-  std::vector<LevelRatios> ratios;    // per level
-  void find_ratios();
+  std::vector<double> taken;    // by coupling and friction, if there is a ledger
+  std::vector<std::vector<FSI::Contact>> guards;    // per level and type: where fluid is pushed off
   void find_guards();
   double *fade =
       nullptr;    // of fluids of several levels: what is left of shifting's factor; or null
@@ -133,11 +131,7 @@ class PairFSIFluid : public PairFSI {
   void add_fades(const K &, const std::vector<FSI::Row> &, const FSI::Visible &);
   // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
   double *backfill = nullptr, *backfill_weight = nullptr;
-  // particles as the loop over these rows sees them, and that loop
-  FSI::FluidParticles of_rows(const FSI::FluidParticles &, const FSI::PairSet &,
-                              const std::vector<FSI::Row> &, const std::vector<double> &visible);
-  FSI::FluidParticles particles_at(const double *points);
-  std::vector<FSI::FluidParticles> particles_of_levels();
+  FSI::FluidParticles particles_at(const double *points);    // null: at atom->x
   template <int D> double volume_of(int i) const;
   // positions a time t later; what else a loop needs is up to complete(i, point)
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);
@@ -157,7 +151,7 @@ class PairFSIFluid : public PairFSI {
   void add_velocities_at_solids();
   void extrapolate_velocities();
   template <int D> void correct_powers();
-  void find_viscosities(const std::vector<FSI::FluidParticles> &of_level, FSI::ForceLaws &);
+  void find_viscosities(const FSI::FluidParticles &, FSI::ForceLaws &);
   template <int D> FSI::FluidParticles gather_for_rates(double dth);
   template <int D> void add_density_rate(double dt);
   void advance_density();
@@ -173,8 +167,7 @@ class PairFSIFluid : public PairFSI {
                           FSI::PairSums *);
   template <int D> void split_forces(const FSI::FluidParticles &, const FSI::ForceLaws &);
   template <int D>
-  void add_implicit_viscosity(const std::vector<FSI::FluidParticles> &of_level, FSI::ForceLaws,
-                              FSI::PairSums *);
+  void add_implicit_viscosity(const FSI::FluidParticles &, FSI::ForceLaws, FSI::PairSums *);
   double given_ghosts = 0.0,
          raised_ghosts = -1.0;    // cutoffs: that of the user, as raised for images
   // the hybrid style that this one makes sum its virial pair by pair; null: none
@@ -182,8 +175,6 @@ class PairFSIFluid : public PairFSI {
   int no_fdotr_before = 0;
   void take_virial(Pair *of);
   FSI::Contact guard_of(int type, double spacing) const;
-  struct Rows;    // of pairs of one set, or of images of these, and how their loop sees particles
-  template <class Sum> void distance_sums(const FSI::FluidParticles &, Sum);
 };
 
 }    // namespace LAMMPS_NS

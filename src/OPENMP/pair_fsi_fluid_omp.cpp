@@ -29,17 +29,6 @@ using namespace FSI;
 
 namespace {
 
-void add(const PairSums &one, PairSums &all)
-{
-  all.artificial += one.artificial;
-  all.laminar += one.laminar;
-  all.coupling += one.coupling;
-  all.walls += one.walls;
-  all.diffusion += one.diffusion;
-  all.guard += one.guard;
-  for (int d = 0; d < 6; d++) all.virial[d] += one.virial[d];
-}
-
 // What rows add to, found in advance: looking at all neighbors takes a quarter of the time of a
 // loop. From the lowest to the highest local particle, and ghost, by blocks of particles that have
 // rows. Loops go over the rows of a set, a part of each, or images of these pairs.
@@ -99,13 +88,16 @@ class ThreadedLoops : public FluidLoops {
     return dim == 2 ? Shift<2>::row(fills) : Shift<3>::row(fills);
   }
 
-  // loop(k, rows of part k, to)
+  // loop(k, pairs of part k, to)
   template <size_t N, class Loop>
-  void run(const RowSpan rows, const RowThreads::Sums (&sums)[N], Loop loop) const
+  void run(const FluidPairs &pairs, const RowThreads::Sums (&sums)[N], Loop loop) const
   {
-    threads.run(rows.first, rows.size(), false, reach, sums,
+    const Row *const rows = pairs.rows.first;
+    threads.run(rows, pairs.rows.size(), false, reach, sums,
                 [&](int k, int first, int last, double *const *to) {
-                  loop(k, RowSpan(rows.first + first, rows.first + last), to);
+                  FluidPairs part = pairs;
+                  part.rows = {rows + first, rows + last};
+                  loop(k, part, to);
                 });
   }
 
@@ -116,64 +108,55 @@ class ThreadedLoops : public FluidLoops {
   }
 
   // the first part has the sums of the caller, as it has the arrays
-  void rates(PairKind kind, const RowSpan rows, const Mirror *mirror, const FluidParticles &in,
-             const RateLaws &laws, double *rate, double *shift, PairSums *sums,
-             std::vector<Row> *near) const override
+  void rates(const FluidPairs &pairs, const RateLaws &laws, double *rate, double *shift,
+             PairSums *sums, std::vector<Row> *near) const override
   {
     std::vector<PairSums> powers(threads.most());
     close.resize(threads.most());
     for (auto &of_part : close) of_part.clear();
-    run(rows, {{rate, 1}, {shift, width_of_shift(laws.fills)}},
-        [&](int k, const RowSpan part, double *const *to) {
-          loops->rates(kind, part, mirror, in, laws, to[0], to[1], k && sums ? &powers[k] : sums,
+    run(pairs, {{rate, 1}, {shift, width_of_shift(laws.fills)}},
+        [&](int k, const FluidPairs &part, double *const *to) {
+          loops->rates(part, laws, to[0], to[1], k && sums ? &powers[k] : sums,
                        k && near ? &close[k] : near);
         });
     for (const PairSums &one : powers)
-      if (sums) add(one, *sums);
+      if (sums) sums->add(one);
     for (const auto &of_part : close)
       if (near) near->insert(near->end(), of_part.begin(), of_part.end());
   }
 
-  void forces(PairKind kind, const RowSpan rows, const Mirror *mirror, const FluidParticles &in,
-              const ForceLaws &laws, double *force, double *total, PairSums *sums) const override
+  void forces(const FluidPairs &pairs, const ForceLaws &laws, double *force, double *total,
+              PairSums *sums) const override
   {
     std::vector<PairSums> powers(threads.most());
     std::vector<std::array<double, 3>> totals(threads.most(), {0.0, 0.0, 0.0});
-    run(rows, {{force, row_of_forces(dim)}, {mirror ? nullptr : laws.taken, row_of_points(dim)}},
-        [&](int k, const RowSpan part, double *const *to) {
+    run(pairs,
+        {{force, row_of_forces(dim)}, {pairs.mirror ? nullptr : laws.taken, row_of_points(dim)}},
+        [&](int k, const FluidPairs &part, double *const *to) {
           ForceLaws own = laws;
           own.taken = to[1];
-          loops->forces(kind, part, mirror, in, own, to[0], k ? totals[k].data() : total,
+          loops->forces(part, own, to[0], k ? totals[k].data() : total,
                         k && sums ? &powers[k] : sums);
         });
     for (const PairSums &one : powers)
-      if (sums) add(one, *sums);
+      if (sums) sums->add(one);
     for (const auto &one : totals)
-      for (int d = 0; d < dim && total; d++) total[d] += one[d];
+      for (int d = 0; d < dim; d++) total[d] += one[d];
   }
 
-  void shifts(PairKind kind, const RowSpan rows, const Mirror *mirror, const FluidParticles &in,
-              double *shift) const override
+  void shifts(const FluidPairs &pairs, double *shift) const override
   {
-    run(rows, {{shift, width_of_shift(false)}}, [&](int, const RowSpan part, double *const *to) {
-      loops->shifts(kind, part, mirror, in, to[0]);
-    });
+    run(pairs, {{shift, width_of_shift(false)}},
+        [&](int, const FluidPairs &part, double *const *to) {
+          loops->shifts(part, to[0]);
+        });
   }
 
-  void number_density(PairKind kind, const RowSpan rows, bool both, const Mirror *mirror,
-                      const FluidParticles &in, const double (*x)[3], double *sum) const override
+  void distances(const FluidPairs &pairs, bool both, const double (*x)[3], const double *vol,
+                 double *sum) const override
   {
-    run(rows, {{sum, 1}}, [&](int, const RowSpan part, double *const *to) {
-      loops->number_density(kind, part, both, mirror, in, x, to[0]);
-    });
-  }
-
-  void position_divergence(const RowSpan rows, bool both, const Mirror *mirror,
-                           const FluidParticles &in, const double (*x)[3], const double *vol,
-                           double *sum) const override
-  {
-    run(rows, {{sum, 1}}, [&](int, const RowSpan part, double *const *to) {
-      loops->position_divergence(part, both, mirror, in, x, vol, to[0]);
+    run(pairs, {{sum, 1}}, [&](int, const FluidPairs &part, double *const *to) {
+      loops->distances(part, both, x, vol, to[0]);
     });
   }
 };

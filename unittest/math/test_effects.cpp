@@ -303,12 +303,11 @@ TEST(FluidLoops, RefuseWhatTheyHaveNotGot)
   const auto loops = make_fluid_loops(WENDLAND, 2, 0.1, true);
   const int j = 1;
   const double part = 1.0;
-  const Visible visible = {&part, &j};
   FluidParticles in;
-  in.visible = &visible;
+  in.visible = {&part, &j};
   double rate[2] = {};
   const auto ask = [&](const std::vector<Row> &rows) {
-    loops->rates(WITH_FLUID, rows, nullptr, in, {}, rate, nullptr, nullptr, nullptr);
+    loops->rates({WITH_FLUID, rows, nullptr, in}, {}, rate, nullptr, nullptr, nullptr);
   };
   EXPECT_NO_THROW(ask({}));
   EXPECT_THROW(ask({{0, 1, &j}}), LAMMPS_NS::LAMMPSException);
