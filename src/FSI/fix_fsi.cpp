@@ -85,7 +85,6 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     clamps(members->clamps), forward(lmp, disc.state), back(lmp, disc.state)
 {
   if (lmp->citeme) lmp->citeme->add(cite_fsi);
-  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
   static const std::vector<std::string> names = {"cubic", "quintic", "wendland"};
   static const char *const kept = "that of the particles cannot change", *const of_kernel =

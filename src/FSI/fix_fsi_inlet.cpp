@@ -51,7 +51,6 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg, std::string("fix ") + arg[2]), members(new Members(lmp, this)),
     end(members->end)
 {
-  if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", end.label);
   if (narg < 5) utils::missing_cmd_args(FLERR, end.command, error);
   const std::string face = arg[3];
   if (face.size() != 3 || face[0] < 'x' || face[0] > 'z' ||

@@ -45,7 +45,6 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), last{},
     origin(Clock::now(update)), original(nullptr), begun(false)
 {
-  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/move", error);
   const auto found = std::find(MOTIONS.begin(), MOTIONS.end(), arg[3]);
   if (found == MOTIONS.end())

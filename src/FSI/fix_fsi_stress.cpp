@@ -38,8 +38,6 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg, "fix fsi/stress"), stress(nullptr), hourglass(nullptr),
     ns(domain->dimension == 2 ? 3 : 6), start(nullptr), strain(nullptr), left(nullptr)
 {
-  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
-
   keywords.key("plane")
       .choice(plane_stress, 0, {"strain", "stress"})
       .kept("the deviator in the file is that of the other");

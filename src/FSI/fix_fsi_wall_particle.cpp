@@ -49,7 +49,6 @@ enum { AS_PRESET, MEAN, LINEAR };    // pressure
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg, "fix fsi/wall/particle"), swaps(new Swaps(lmp))
 {
-  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
   keywords.key("pressure").choice(pressure, AS_PRESET, {"auto", "mean", "linear"});
   keywords.key("guard").number(guard, AUTO, Range::between(0.0, 1.0)).or_word("auto", AUTO);

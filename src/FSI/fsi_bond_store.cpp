@@ -112,13 +112,8 @@ void BondStore::move(int i, int from, int to)
 
 void BondStore::complete(int i)
 {
-  domain->dimension == 2 ? complete_as<2>(i) : complete_as<3>(i);
-}
-
-template <int D> void BondStore::complete_as(int i)
-{
-  const int n = count(i);
-  double M[packed_size(D)] = {};
+  const int n = count(i), D = domain->dimension;
+  double M[packed_size(3)] = {};
   for (int k = n; k < whole_blocks(n); k++)
     for (int v = 0; v < nvalue; v++) bond(i, k)[v * BOND_BLOCK] = 0.0;
   for (int k = 0; k < n; k++) {
@@ -126,7 +121,7 @@ template <int D> void BondStore::complete_as(int i)
     for (int a = 0, m = 0; a < D; a++)
       for (int c = 0; c <= a; c++) M[m++] += w * X[a * BOND_BLOCK] * X[c * BOND_BLOCK];
   }
-  std::copy_n(M, packed_size(D), &moment[(size_t) slot[i] * packed_size(D)]);
+  std::copy_n(M, nmoment, &moment[(size_t) slot[i] * nmoment]);
 }
 
 bool BondStore::renew(int i)
@@ -156,7 +151,7 @@ template <int D> bool BondStore::renew_as(int i)
   }
   for (int k = 0; k < n; k++)
     for (int a = 0; a < D; a++) bond(i, k)[a * BOND_BLOCK] = G[k * D + a];
-  complete_as<D>(i);
+  complete(i);
   return true;
 }
 

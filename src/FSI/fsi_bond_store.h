@@ -136,7 +136,6 @@ namespace FSI {
     int find_partner(int i, tagint) const;
     int image_at(const double *place, int j) const;
     void follow_long_bonds(int i, int *of_i) const;
-    template <int D> void complete_as(int i);
     template <int D> bool renew_as(int i);
   };
 

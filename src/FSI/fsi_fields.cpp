@@ -278,6 +278,8 @@ const double *FSI::restart_values(const double *extra, int nth)
 FixFields::FixFields(LAMMPS *lmp, int narg, char **arg, const std::string &command) :
     Fix(lmp, narg, arg), command(command), keywords(lmp, command), fields(lmp)
 {
+  if (!atom->style_match("fsi"))
+    error->all(FLERR, "F{} requires atom_style fsi", command.substr(1));
   restart_global = 1;
 }
 

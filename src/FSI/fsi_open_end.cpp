@@ -297,11 +297,6 @@ void Absorber::find_area()
   area = sum_of(at_plane, world);
 }
 
-bool Absorber::meets_pressure() const
-{
-  return !end.has_own_pressure() && end.softest().p0 > 0.0 && area != 0.0;
-}
-
 // What pushes the fluid is the stress at the plane, the mean of p sum_j V_j x_ji.grad_i W_ij/D. It
 // goes with the square of number density times volume, of which 0.5 % are 5 % of what drives a flow
 // if pressure is five times its difference: what the stress lacks is added to the buffer's pressure

@@ -141,7 +141,10 @@ namespace FSI {
     Absorber(LAMMPS *lmp, const OpenEnd &end) : Pointers(lmp), end(end) {}
     void advance(double dt, bool driven);    // driven: has an open end a given velocity?
     void find_area();
-    bool meets_pressure() const;
+    bool meets_pressure() const
+    {
+      return !end.has_own_pressure() && end.softest().p0 > 0.0 && area != 0.0;
+    }
     void meet_pressure(const double *divergence, double dt);
 
    private:

@@ -30,8 +30,6 @@
 #include "pair_fsi_fluid_kokkos.h"
 #include "update.h"
 
-#include <cmath>
-
 using namespace LAMMPS_NS;
 using namespace FSI;
 

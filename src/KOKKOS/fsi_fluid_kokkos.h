@@ -25,8 +25,6 @@
 #include "fsi_kernel.h"
 #include "neigh_list_kokkos.h"
 
-#include <string>
-
 namespace LAMMPS_NS {
 namespace FSI {
 
