@@ -183,12 +183,10 @@ void FixFSIRefine::check_types() const
     differs("viscosity", first.viscosity, s.viscosity);
     differs("background pressure", first.p0, s.p0);
     differs("lowest pressure", first.floor, s.floor);
-    if (!(first.law == s.law))
-      error->all(FLERR, "{}: atom types {} and {} have different laws of viscosity", label,
-                 types[0], types[k]);
-    if (first.tait != s.tait)
-      error->all(FLERR, "{}: atom types {} and {} have different equations of state", label,
-                 types[0], types[k]);
+    const bool laws = !(first.law == s.law);
+    if (laws || first.tait != s.tait)
+      error->all(FLERR, "{}: atom types {} and {} have different {}", label, types[0], types[k],
+                 laws ? "laws of viscosity" : "equations of state");
     if (k == 0) continue;
     const double coarse = disc->dx_of(types[k - 1]), fine = disc->dx_of(types[k]);
     if (std::fabs(fine / coarse / expected - 1.0) > RATIO_ERROR)
@@ -348,10 +346,9 @@ bool FixFSIRefine::in_open_end(int i, int wish) const
 // coarser one's kernel. As far as there is fluid.
 void FixFSIRefine::check_zones() const
 {
-  const int nall = atom->nlocal + atom->nghost;
   for (int k = 1; k < finest(); k++) {
     const double support = disc->resolution[types[k - 1]].cut;
-    const Cells inner(atom->x, nall, disc->dim, support, [&](int j) {
+    const Cells inner(atom, disc->dim, support, [&](int j) {
       return level(j) >= 0 && (carried[j] & 1 << (k + 1));
     });
     for (int i = 0; i < atom->nlocal; i++) {
@@ -375,21 +372,18 @@ void FixFSIRefine::warn_of_bodies()
 {
   if (warned) return;
   warned = true;
-  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
-  const auto is_body = [&](int j) {
+  const int *const type = atom->type;
+  const Cells bodies(atom, disc->dim, disc->cut, [&](int j) {
     const int species = disc->state[type[j]].species;
     return species == SOLID || species == RIGID;
-  };
-  const Cells bodies(atom->x, nall, disc->dim, disc->cut, is_body);
+  });
   const auto coarse = find_particles(atom, world, [&](int i) {
     const int now = level(i);
     if (now < 0 || now == finest() || (carried[i] & SPLIT)) return false;
     const double dx = disc->dx_of(type[i]);
-    bool found = false;
-    bodies.around(atom->x[i], [&](int j, double rsq) {
-      found = found || (rsq < dx * dx && dx > TOO_COARSE * disc->dx_of(type[j]));
+    return bodies.any_within(atom->x[i], dx, [&](int j) {
+      return dx > TOO_COARSE * disc->dx_of(type[j]);
     });
-    return found;
   });
   if (coarse.count && comm->me == 0)
     error->warning(FLERR,
@@ -415,8 +409,7 @@ static uint64_t hash_of(tagint a, tagint b)
   return hash;
 }
 
-// Splitting. Halves must not come nearer to a mirror wall than particles of their spacing are, and
-// not leave the box
+// Splitting. Halves stay as far from mirror walls as particles of their spacing, and in the box
 double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
 {
   double sum = 0.0;
@@ -562,7 +555,7 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   std::sort(which.begin(), which.end(), [&](int a, int b) {
     return atom->tag[a] < atom->tag[b];
   });
-  const Cells cells(atom->x, atom->nlocal + atom->nghost, disc->dim, disc->cut, [&](int j) {
+  const Cells cells(atom, disc->dim, disc->cut, [&](int j) {
     return disc->state[atom->type[j]].species != NONE;
   });
   choose_directions(which, cells);
@@ -602,18 +595,16 @@ static bool are_apart(const Walls &walls, const double *x, const double *y)
 }
 
 // Merging: pairs of which each is the other's best partner, by distance, then by a hash of both
-// IDs, which knows no direction; then among those that are left. Whole numbers, the same on all
-// ranks.
+// IDs, which knows no direction; then those that are left. Whole numbers, the same on all ranks.
 void FixFSIRefine::choose_partners()
 {
-  const int nall = atom->nlocal + atom->nghost;
   const tagint *const tag = atom->tag;
-  partner.assign(nall, 0);
+  partner.assign(atom->nlocal + atom->nghost, 0);
   chosen.assign(atom->nlocal, -1);
   const auto wants = [&](int i) {
     return (carried[i] & MERGE) != 0;
   };
-  const Cells cells(atom->x, nall, disc->dim, FAR_REACH * disc->dx_of(types[1]), wants);
+  const Cells cells(atom, disc->dim, FAR_REACH * disc->dx_of(types[1]), wants);
   for (int round = 0; round < ROUNDS; round++) {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!wants(i) || partner[i] < 0) continue;
@@ -729,9 +720,6 @@ void FixFSIRefine::divide(const std::vector<Division> &divisions)
   }
 }
 
-/* ----------------------------------------------------------------------
-   messages
-------------------------------------------------------------------------- */
 void FixFSIRefine::write_restart(FILE *fp)
 {
   Record record(lmp, style);

@@ -41,8 +41,7 @@ namespace FSI {
 
 // Levels of one fluid, atom types each with half the mass of the one before: where a finer one is
 // wanted a particle splits in two, elsewhere two that are nearest to each other merge. Only in
-// steps that are multiples of a number, with new neighbor lists, so that neither lists nor restarts
-// change when.
+// multiples of some steps, with new neighbor lists: neither lists nor restarts change when.
 
 class FixFSIRefine : public Fix {
  public:

@@ -60,7 +60,7 @@ enum Kind {    // of particles that are counted
 };
 // clang-format on
 
-struct Near {    // two particles
+struct Near {    // two particles, or bodies
   double r;      // spacings
   tagint a, b;
   int around;    // direction in which they meet around the box, or -1
@@ -105,9 +105,10 @@ struct Census : public Pointers {
   bool any(Kind kind) const { return found[kind].count > 0; }
   template <class Choose> Cells cells(double size, Choose choose) const
   {
-    return {atom->x, atom->nlocal + atom->nghost, disc.dim, size, choose};
+    return {atom, disc.dim, size, choose};
   }
   double coarsest() const;
+  std::vector<int> types_of(int species) const;
   template <class... T> void warn(const char *format, const T &...values) const
   {
     if (comm->me == 0)
@@ -200,6 +201,15 @@ double Census::coarsest() const
   return most;
 }
 
+// that are present
+std::vector<int> Census::types_of(int species) const
+{
+  std::vector<int> types;
+  for (size_t t = 1; t < present.size(); t++)
+    if (present[t] && disc.state[t].species == species) types.push_back(t);
+  return types;
+}
+
 // a density that no material has in the units of the script, or a solid softer than jelly
 static void units(const Census &c)
 {
@@ -227,11 +237,10 @@ static void background(const Census &c)
 {
   static constexpr double MUCH = 0.05;    // of the volume
   double p = 0.0;
-  for (size_t t = 1; t < c.present.size(); t++)
-    if (c.present[t] && c.disc.state[t].species == FLUID) p = std::max(p, c.disc.state[t].p0);
-  for (size_t t = 1; t < c.present.size(); t++) {
+  for (const int t : c.types_of(FLUID)) p = std::max(p, c.disc.state[t].p0);
+  for (const int t : c.types_of(SOLID)) {
     const State &s = c.disc.state[t];
-    if (c.present[t] && s.species == SOLID && p > MUCH * s.rho0 * s.csq)
+    if (p > MUCH * s.rho0 * s.csq)
       c.warn(
           "the background pressure {:g} compresses bodies of type {}, of bulk modulus {:.3g}, by "
           "{:.0f} % of their volume: take less of it, or a larger Poisson's ratio",
@@ -299,8 +308,7 @@ static Near find_nearest(const Census &c, double *sum, std::vector<double> &of_b
   return closest;
 }
 
-// the particles' distance is the spacing that they were said to have (returned), no two are at one
-// place
+// are particles as far apart as they were said to be (returned), no two of them at one place?
 static bool spacing(const Census &c)
 {
   double sum[3];
@@ -343,10 +351,7 @@ static void contact(const Census &c)
 {
   static constexpr double LITTLE = 0.02, OVERLAP = 0.8;    // of the range; spacings
   const double range = c.solids.contact;
-  struct {
-    double apart;
-    tagint a, b;
-  } least = {BIG, 0, 0};
+  Near least = {BIG, 0, 0, -1};
   const Cells cells = c.cells(range * c.coarsest(), [&](int i) {
     return c.solid(i);
   });
@@ -356,21 +361,21 @@ static void contact(const Census &c)
     cells.around(c.atom->x[i], [&](int j, double rsq) {
       const double apart = std::sqrt(rsq) / (0.5 * (c.dx(i) + c.dx(j)));
       const tagint other = c.atom->molecule[j];
-      if (apart >= std::min(least.apart, (1.0 - LITTLE) * range) || other == body ||
+      if (apart >= std::min(least.r, (1.0 - LITTLE) * range) || other == body ||
           !(c.moves(i) || c.moves(j)))
         return;
-      least = {apart, std::min(body, other), std::max(body, other)};
+      least = {apart, std::min(body, other), std::max(body, other), -1};
     });
   }
-  const auto all = of_least(least.apart, least, c.world);
-  if (all.apart == BIG) return;
+  const auto all = of_least(least.r, least, c.world);
+  if (all.r == BIG) return;
   return c.warn(
       "bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches {:.3g}: it "
       "pushes at once. Move them apart{}",
-      all.a, all.b, all.apart < OVERLAP ? "overlap, with particles" : "begin", all.apart, range,
-      all.apart < 1.0 - 1.0e-6
+      all.a, all.b, all.r < OVERLAP ? "overlap, with particles" : "begin", all.r, range,
+      all.r < 1.0 - 1.0e-6
           ? ""
-          : fmt::format(", or contact {:.3g}", std::floor(10.0 * all.apart + 1.0e-6) / 10.0));
+          : fmt::format(", or contact {:.3g}", std::floor(10.0 * all.r + 1.0e-6) / 10.0));
 }
 
 // A body that ends at a mirror wall is free there: mirror walls act on fluid. Not where weight acts
@@ -417,16 +422,15 @@ static void yields(const Census &c)
   for (const auto *part : c.parts)
     for (const auto &effect : part->effects())
       if (effect.keyword == "fix fsi/stress plastic" && effect.on && c.solids.by_rate) return;
-  for (size_t t = 1; t < c.present.size(); t++)
-    if (c.present[t] && c.disc.state[t].species == SOLID && c.disc.state[t].yield > 0.0)
+  for (const int t : c.types_of(SOLID))
+    if (c.disc.state[t].yield > 0.0)
       c.warn("the material of type {} has a yield stress, but stays elastic: it acts "
              "with law hypo of pair_style fsi/solid/tl, or with pair_style fsi/solid, "
              "and fix fsi/stress ... plastic",
              t);
 }
 
-// A scene in which everything is at rest and stays so: no velocity, no force, and no fix but those
-// that only watch.
+// A scene that is at rest and stays so: no velocity, no force, no fix but those that only watch.
 static void nothing_acts(const Census &c)
 {
   static const char *const watching[] = {"fsi/dt",       "fsi/watch", "fsi/report", "fsi/stress",
@@ -503,9 +507,7 @@ static double gravity(const Census &c, int type, std::array<double, 3> &down)
 static void speeds(const Census &c)
 {
   static constexpr double LINEAR = 1.0e5;
-  std::vector<int> types;    // of fluids
-  for (size_t t = 1; t < c.present.size(); t++)
-    if (c.present[t] && c.disc.state[t].species == FLUID) types.push_back(t);
+  const auto types = c.types_of(FLUID);
   if (types.empty()) return;
   std::array<double, 3> down;
   const double g = gravity(c, types[0], down);
@@ -544,7 +546,7 @@ static void speeds(const Census &c)
 static void levels(const Census &c)
 {
   static constexpr double JUMP = 1.45, COARSEST = 2.0, FINEST = 4.0, ROUND = 1.0 + 1.0e-6;
-  const Cells cells(c.atom->x, c.atom->nlocal + c.atom->nghost, c.disc.dim, c.disc.cut);
+  const Cells cells = c.cells(c.disc.cut, every);
   // fluid for which meets(i, j) holds with any of its neighbors
   const auto fluid_that = [&](auto meets) {
     return find_particles(c.atom, c.world, [&](int i) {
@@ -657,8 +659,7 @@ static void shallow(const Census &c)
 }
 
 // Walls of particles that have a velocity and that no fix moves: along its face such a wall is a
-// belt, with others before and behind each of its particles; across it fluid is pressed or drawn by
-// what never comes
+// belt, with others before and behind each of its particles; across it, what presses never comes
 static void standing_walls(const Census &c)
 {
   static constexpr double BESIDE = 1.5, NEXT = 0.6;    // spacings
@@ -669,29 +670,21 @@ static void standing_walls(const Census &c)
   const Cells walls = c.cells(NEXT * c.coarsest(), [&](int i) {
     return c.state(i).species == RIGID;
   });
-  const auto any_near = [&](const Cells &cells, const double *x, double reach) {
-    bool any = false;
-    cells.around(x, reach, [&](int, double rsq) {
-      any |= rsq < reach * reach;
-    });
-    return any;
-  };
-  const auto stands = [&](int i) {
-    return c.state(i).species == RIGID && c.goes(i) && !is_moved(i, c.lmp) &&
-        any_near(fluids, c.atom->x[i], BESIDE * c.dx(i));
-  };
-  const auto all = find_particles(c.atom, c.world, stands);
+  bigint stand = 0;
   const auto across = find_particles(c.atom, c.world, [&](int i) {
-    if (!stands(i)) return false;
-    const double *const x = c.atom->x[i], *const v = c.atom->v[i],
-                        step = c.dx(i) / MathExtra::len3(v);
-    const auto next = [&](double way) {
+    const double *const x = c.atom->x[i], *const v = c.atom->v[i], dx = c.dx(i);
+    if (c.state(i).species != RIGID || !c.goes(i) || is_moved(i, c.lmp) ||
+        !fluids.any_within(x, BESIDE * dx))
+      return false;
+    stand++;
+    const auto next = [&](double step) {
+      const double way = step / MathExtra::len3(v);
       const double p[3] = {x[0] + way * v[0], x[1] + way * v[1], x[2] + way * v[2]};
-      return any_near(walls, p, NEXT * c.dx(i));
+      return walls.any_within(p, NEXT * dx);
     };
-    return !next(step) || !next(-step);
+    return !next(dx) || !next(-dx);
   });
-  if (2 * across.count > all.count)
+  if (2 * across.count > count_of(stand, c.world))
     c.warn("{} wall particles, the first of them atom {}, have a velocity across their face, and "
            "no fix moves them: fix move or fix fsi/move",
            across.count, across.first);
@@ -745,8 +738,7 @@ static void ends(const Census &c)
   }
 }
 
-// Where runs begin to fail (doc/notes/fluid.md, Courant number), over the limit that fix fsi/dt
-// keeps
+// Where runs begin to fail (doc/notes/fluid.md, Courant number), over the limit of fix fsi/dt
 static void time_step(const Census &c)
 {
   static constexpr struct {

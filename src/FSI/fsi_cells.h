@@ -29,18 +29,16 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // Local and ghost particles, or those chosen of them, in cells, for questions about the nearest
-  // one.
+  inline bool every(int)    // particle
+  {
+    return true;
+  }
+
+  // Local and ghost particles that are chosen, in cells, for questions about the nearest one.
   class Cells {
    public:
     static constexpr double LARGE = 1.0e300;
 
-    Cells(const double *const *x, int n, int dim, double size) :
-        Cells(x, n, dim, size, [](int) {
-          return true;
-        })
-    {
-    }
     template <class Choose>
     Cells(const double *const *x, int n, int dim, double size, Choose choose) :
         x(x), dim(dim), size(size)
@@ -82,12 +80,29 @@ namespace FSI {
         if (cell[i] >= 0) members[--first[cell[i]]] = i;
     }
 
+    // of local and ghost atoms
+    template <class Choose>
+    Cells(const Atom *atom, int dim, double size, Choose choose) :
+        Cells(atom->x, atom->nlocal + atom->nghost, dim, size, choose)
+    {
+    }
+
     // calls f(j, squared distance) for all particles within the cell size of a place, or the reach
     // given, and others: cells a third as wide hold few that are too far
     template <typename F> void around(const double *p, F f) const { around(p, size, f); }
     template <typename F> void around(const double *p, double reach, F f) const
     {
       dim == 2 ? around_in<2>(p, reach, f) : around_in<3>(p, reach, f);
+    }
+    // is one nearer than that for which is(j)?
+    template <typename Is = bool (*)(int)>
+    bool any_within(const double *p, double reach, Is is = every) const
+    {
+      bool any = false;
+      around(p, reach, [&](int j, double rsq) {
+        any = any || (rsq < reach * reach && is(j));
+      });
+      return any;
     }
 
    private:
@@ -163,7 +178,7 @@ namespace FSI {
       }
       pass(lmp, reach, local);
       for (const Position &place : places) x.push_back(place.data());
-      cells = std::make_unique<Cells>(x.data(), (int) x.size(), domain->dimension, reach);
+      cells = std::make_unique<Cells>(x.data(), (int) x.size(), domain->dimension, reach, every);
     }
     bool empty() const { return total == 0; }    // on all ranks
     // squared distance of one from here; large where none is in reach

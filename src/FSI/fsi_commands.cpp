@@ -70,7 +70,6 @@ void FSIClamp::command(int narg, char **arg)
   lmp->init();    // materials are entered there
   renew_ghosts(lmp);
 
-  double **const x = atom->x;
   const int *const type = atom->type;
   int *const mask = atom->mask;
   const auto in = [&](int i, int k) {
@@ -84,19 +83,16 @@ void FSIClamp::command(int narg, char **arg)
                  "Fsi/clamp {} {}: fix {} (style {}) knows its particles already, and would not "
                  "move those that come: expected it after fsi/clamp",
                  names[0], names[1], fix->id, fix->style);
-  const int nall = atom->nlocal + atom->nghost;
-  const Cells clamps(x, nall, disc.dim, NEXT * disc.largest_cut, [&](int i) {
+  const Cells clamps(atom, disc.dim, NEXT * disc.largest_cut, [&](int i) {
     return in(i, 1);
   });
   std::vector<int> over;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!in(i, 0) || in(i, 1)) continue;
-    const double reach = NEXT * disc.dx_of(type[i]);
-    bool next = false;
-    clamps.around(x[i], reach, [&](int j, double rsq) {
-      next |= rsq < reach * reach && atom->molecule[j] == atom->molecule[i];
-    });
-    if (next) over.push_back(i);
+    const auto of_body = [&](int j) {
+      return atom->molecule[j] == atom->molecule[i];
+    };
+    if (in(i, 0) && !in(i, 1) && clamps.any_within(atom->x[i], NEXT * disc.dx_of(type[i]), of_body))
+      over.push_back(i);
   }
   bool moved = false;
   for (const int i : over) {
@@ -148,7 +144,7 @@ std::vector<double> FSIDisplace::find_covered(const Discretization &disc, IsFlui
   double **const x = atom->x;
   const int *const type = atom->type;
   std::vector<double> key(atom->nlocal, NEVER);
-  const Cells bodies(x, atom->nlocal + atom->nghost, disc.dim, disc.largest_cut, is_body);
+  const Cells bodies(atom, disc.dim, disc.largest_cut, is_body);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_fluid(i)) continue;
     const double dx = disc.dx_of(type[i]);

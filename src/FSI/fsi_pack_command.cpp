@@ -199,10 +199,9 @@ void FSIPack::choose(double volume)
     } else if (atom->mask[i] & body && !inside[i])
       atom->mask[i] ^= body | filler;
   renew_ghosts(lmp);
-  const Cells staying(atom->x, atom->nlocal + atom->nghost, domain->dimension, disc->dx,
-                      [this](int i) {
-                        return (atom->mask[i] & (fluid | still)) != 0;
-                      });
+  const Cells staying(atom, disc->dim, disc->dx, [this](int i) {
+    return (atom->mask[i] & (fluid | still)) != 0;
+  });
   const double reach = band + disc->largest_cut;    // what moves sees no end of it
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
@@ -262,7 +261,7 @@ std::vector<double> FSIPack::part(const std::vector<double> &mobility,
                                   const std::vector<double> &side)
 {
   const int *const type = atom->type;
-  const Cells all(atom->x, atom->nlocal + atom->nghost, domain->dimension, disc->dx);
+  const Cells all(atom, disc->dim, disc->dx, every);
   std::vector<std::array<double, 3>> shift(atom->nlocal, {0.0, 0.0, 0.0});
   for (int i = 0; i < atom->nlocal; i++) {
     if (mobility[i] <= 0.0) continue;

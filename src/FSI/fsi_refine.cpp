@@ -101,20 +101,14 @@ void Zones::check_number(size_t types)
                distances.empty() ? "regions" : "distances");
 }
 
-// each by the least that there has to be between two
-void Zones::find_wider(const Discretization &disc, const std::vector<int> &types)
-{
-  wider.assign(types.size() - 1, 0.0);
-  for (size_t k = nested ? wider.size() - 1 : 0; k > 0; k--)
-    wider[k - 1] = wider[k] + disc.resolution[types[k - 1]].cut + disc.dx_of(types[k]);
-}
-
-// Between the zone of level k + 1 and the end of that of level k: one level is all that a particle
-// sees beside its own
+// Zones of levels k and k + 1 end so far apart that a particle sees one level beside its own
 void Zones::init(const Discretization &disc, const std::vector<int> &types)
 {
   find_body();
-  find_wider(disc, types);
+  // each by the least that there has to be between two
+  wider.assign(types.size() - 1, 0.0);
+  for (size_t k = nested ? wider.size() - 1 : 0; k > 0; k--)
+    wider[k - 1] = wider[k] + disc.resolution[types[k - 1]].cut + disc.dx_of(types[k]);
   regions.clear();
   can_move = !distances.empty();
   for (const auto &name : region_ids) {
@@ -192,9 +186,7 @@ bool Zones::has(int k, int i, double grown) const
   return false;
 }
 
-/* ----------------------------------------------------------------------
-   settling
-------------------------------------------------------------------------- */
+// ---- settling ----
 
 // A step over the sum of V grad W dx^2
 static constexpr double STRENGTH = 0.15;
@@ -242,7 +234,7 @@ void Settling::find_rows()
 {
   const int nall = atom->nlocal + atom->nghost;
   const int *const type = atom->type;
-  const Cells cells(atom->x, nall, disc.dim, 0.25 * disc.cut, [&](int j) {
+  const Cells cells(atom, disc.dim, 0.25 * disc.cut, [&](int j) {
     return disc.state[type[j]].species != NONE;
   });
   const auto reach_of = [&](int t) {
@@ -302,7 +294,7 @@ void Settling::run(int sweeps)
     for (int k = 0; k < sweeps; k++) {
       if (k == 0 || !rows_hold()) find_rows();
       for (int j = 0; j < nall; j++) std::copy_n(atom->x[j], 3, &points[POINT * j]);
-      have_packs() ? sum_up<Pack>(of_types) : sum_up<double>(of_types);
+      sum_up(of_types);
       if (step.walls.finite()) add_images_of_segments(of_types);
       displace<K::DIM>();
       comm->forward_comm();
@@ -343,7 +335,7 @@ FSI_INLINE static void add_images(const Row &row, const double *points, const in
   for (int n = 0; n <= K::DIM; n++) sums[n] += Lanes<T>::sum(sum[n]);
 }
 
-template <class T, class K> void Settling::sum_up(const std::vector<K> &of_types)
+template <class K> void Settling::sum_up(const std::vector<K> &of_types)
 {
   const Walls &walls = step.walls;
   const std::vector<Walls::Reflection> &reflections = walls.reflections;
@@ -352,7 +344,7 @@ template <class T, class K> void Settling::sum_up(const std::vector<K> &of_types
   const bool segments = walls.finite();
   sums.assign(rows.size(), {});
   at_walls.clear();
-  run_loop<T>([&](const auto &number) FSI_INLINE_LAMBDA {
+  run_widest([&](const auto &number) FSI_INLINE_LAMBDA {
     using Number = std::decay_t<decltype(number)>;
     for (size_t r = 0; r < rows.size(); r++) {
       const Row &row = rows[r];

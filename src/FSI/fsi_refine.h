@@ -44,9 +44,8 @@ namespace FSI {
   // the old one's place make the finer lattice out of a square one, and one with eight equal
   // neighbors (body-centered) out of a simple cubic one. No LAMMPS types.
 
-  // Directions along which a particle may split, one of each pair of opposite ones, as unit
-  // vectors; the simplest first, since the first of equals is taken: so all of a lattice split the
-  // same way.
+  // Unit vectors along which a particle may split, one of each pair of opposite ones; the simplest
+  // first: the first of equals is taken, so that all of a lattice split the same way.
   inline std::vector<std::array<double, 3>> split_directions(int dim)
   {
     struct Whole {
@@ -163,15 +162,13 @@ namespace FSI {
 
     void init(const Discretization &, const std::vector<int> &types);
     bool moving() const { return can_move; }
-    // where they are at the end of this step, and so much beyond them; positions are by that time
-    // before it
+    // where they are at the end of this step, and beyond; positions are by that time before it
     void find(const Discretization &, double beyond, double time);
     bool has(int k, int i, double grown) const;    // is i in zone k, from 1 on, grown by that?
     std::string names(int k) const;                // of zones k and k + 1, for errors
 
    private:
     void find_body();
-    void find_wider(const Discretization &, const std::vector<int> &types);
     const std::string label;
     std::vector<std::string> region_ids;
     std::vector<Region *> regions;
@@ -197,8 +194,7 @@ namespace FSI {
       bigint n = 0;
     };
     static constexpr double LONGEST = 0.05;    // step of a sweep over dx
-    // how freely each local particle moves, 0 to 1, and is judged; bound(i): keeps it where it may
-    // be after each move
+    // how freely each local particle moves, 0 to 1, is it judged? bound(i) keeps it where it may be
     Settling(LAMMPS *, const Discretization &, const StepState &, Ledger &,
              const std::vector<double> &mobility, const std::vector<char> &judged,
              const std::function<void(int)> &bound);
@@ -221,14 +217,13 @@ namespace FSI {
     std::vector<Row> rows;          // particles that are moved, and themselves among others
     std::vector<Mirror> mirrors;    // none, then those of the walls' reflections
     std::vector<int> neighbors;     // of the rows
-    // of each row: sum of V grad W, and behind it that of V W; and rows that see walls, with the
-    // bits of these
+    // of each row: sums of V grad W, then of V W; and rows that see walls, with the bits of these
     std::vector<std::array<double, 4>> sums;
     std::vector<std::pair<size_t, int>> at_walls;
 
     void find_rows();
     bool rows_hold() const;
-    template <class T, class K> void sum_up(const std::vector<K> &of_types);
+    template <class K> void sum_up(const std::vector<K> &of_types);
     template <class K> void add_images_of_segments(const std::vector<K> &of_types);
     template <int D> void displace();
   };
