@@ -34,7 +34,6 @@
 #include "variable.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -45,10 +44,11 @@ using namespace FSI;
 
 static constexpr double NEXT = 1.2;    // spacings: the next column, not the diagonal neighbor
 
-// the groups, arguments `first` group-ID and `second` group-ID, of command fsi/`name`; their names
-static std::array<int, 2> two_groups(LAMMPS *lmp, const std::string &name, const std::string &first,
+// of command fsi/`name`: names and bits of its groups, arguments `first` group-ID and `second`
+// group-ID; materials and masses are entered, ghosts are there
+static const Discretization &prepare(LAMMPS *lmp, const std::string &name, const std::string &first,
                                      const std::string &second, int narg, char **arg,
-                                     std::string (&names)[2])
+                                     std::string (&names)[2], int (&bit)[2])
 {
   if (lmp->domain->box_exist == 0)
     lmp->error->all(FLERR, "Fsi/{} command before simulation box is defined", name);
@@ -56,20 +56,20 @@ static std::array<int, 2> two_groups(LAMMPS *lmp, const std::string &name, const
   keywords.argument(first + " group-ID").word(names[0], "");
   keywords.argument(second + " group-ID").word(names[1], "");
   keywords.parse(narg, arg);
-  return {group_of(lmp, "Fsi/" + name, names[0]), group_of(lmp, "Fsi/" + name, names[1])};
+  for (int k = 0; k < 2; k++) bit[k] = lmp->group->bitmask[group_of(lmp, "Fsi/" + name, names[k])];
+  const Discretization &disc = FixFSI::find(lmp, "Fsi/" + name)->disc;
+  lmp->init();
+  renew_ghosts(lmp);
+  return disc;
 }
 
 void FSIClamp::command(int narg, char **arg)
 {
   std::string names[2];
-  const auto igroup = two_groups(lmp, "clamp", "free", "clamp", narg, arg, names);
-  if (igroup[0] == 0 || igroup[1] == 0)
+  int bit[2];
+  const Discretization &disc = prepare(lmp, "clamp", "free", "clamp", narg, arg, names, bit);
+  if (names[0] == "all" || names[1] == "all")
     error->all(FLERR, "Fsi/clamp group-ID all: expected a group of a part");
-  const int bit[] = {group->bitmask[igroup[0]], group->bitmask[igroup[1]]};
-  const Discretization &disc = FixFSI::find(lmp, "Fsi/clamp")->disc;
-  lmp->init();    // materials are entered there
-  renew_ghosts(lmp);
-
   const int *const type = atom->type;
   int *const mask = atom->mask;
   const auto in = [&](int i, int k) {
@@ -117,12 +117,11 @@ void FSIClamp::command(int narg, char **arg)
     utils::logmesg(lmp, "  fsi/clamp: {} particles go from {} to {}\n", all, names[0], names[1]);
 }
 
-namespace {
-constexpr double NEVER = 1e9;
+static constexpr double NEVER = 1e9;
 
 // This part of a particle's cell a cell of the body covers, squares or cubes. Cells of a lattice
 // fill space, so the sum over the fluid is the body's volume in it, wherever the two lattices lie.
-double covered(const double *xi, double a, const double *xj, double b, int dim)
+static double covered(const double *xi, double a, const double *xj, double b, int dim)
 {
   double part = 1.0;
   for (int d = 0; d < dim; d++) {
@@ -132,15 +131,14 @@ double covered(const double *xi, double a, const double *xj, double b, int dim)
   return part;
 }
 
-}    // namespace
-
 // Of each particle of fluid that a body covers the key, of others NEVER; sum: how many, and their
 // mass. First goes what is covered most and nearest to the body, in spacings, so that none that
 // stays is too near; of the same by place.
 template <class IsFluid, class IsBody>
-std::vector<double> FSIDisplace::find_covered(const Discretization &disc, IsFluid is_fluid,
-                                              IsBody is_body, double *sum) const
+static std::vector<double> find_covered(const LAMMPS *lmp, const Discretization &disc,
+                                        IsFluid is_fluid, IsBody is_body, double *sum)
 {
+  const Atom *const atom = lmp->atom;
   double **const x = atom->x;
   const int *const type = atom->type;
   std::vector<double> key(atom->nlocal, NEVER);
@@ -157,7 +155,7 @@ std::vector<double> FSIDisplace::find_covered(const Discretization &disc, IsFlui
     if (part == 0.0) continue;
     sum[0] += part;
     sum[1] += part * atom->rmass[i];
-    key[i] = std::floor((nearest / dx - part) * 1e4 + 0.5) + part_by_place(x[i], domain);
+    key[i] = std::floor((nearest / dx - part) * 1e4 + 0.5) + part_by_place(x[i], lmp->domain);
   }
   return key;
 }
@@ -165,11 +163,8 @@ std::vector<double> FSIDisplace::find_covered(const Discretization &disc, IsFlui
 void FSIDisplace::command(int narg, char **arg)
 {
   std::string names[2];
-  const auto igroup = two_groups(lmp, "displace", "fluid", "body", narg, arg, names);
-  const int bit[] = {group->bitmask[igroup[0]], group->bitmask[igroup[1]]};
-  const Discretization &disc = FixFSI::find(lmp, "Fsi/displace")->disc;
-  lmp->init();    // materials and masses are entered there
-  renew_ghosts(lmp);
+  int bit[2];
+  const Discretization &disc = prepare(lmp, "displace", "fluid", "body", narg, arg, names, bit);
   const int *const type = atom->type, *const mask = atom->mask;
   const auto is_fluid = [&](int i) {
     return mask[i] & bit[0] && disc.state[type[i]].species == FLUID;
@@ -185,7 +180,7 @@ void FSIDisplace::command(int narg, char **arg)
                  k == 0 ? "a fluid" : "a body");
 
   double here[3] = {}, all[3];    // particles, mass in whose place the body is; what goes
-  const auto key = find_covered(disc, is_fluid, is_body, here);
+  const auto key = find_covered(lmp, disc, is_fluid, is_body, here);
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
 
   const double limit = limit_of(key, std::llround(all[0]), -NEVER, NEVER, world);
@@ -290,6 +285,31 @@ void FSIMaterial::command(int narg, char **arg)
 // settle 2 % off at c = 10 sqrt(2 g H).)
 enum { DENSITY, PRESSURE, HYDROSTATIC, VOLUME };
 
+// whether it has been set
+static bool set_density(const LAMMPS *lmp, int i, int what, const std::string &name, double value,
+                        const State &s, const BodyForces &forces)
+{
+  const Atom *const atom = lmp->atom;
+  if (s.species == NONE || s.species == RIGID) return false;    // walls: from the fluid
+  if (s.form == TOTAL_LAGRANGIAN) return false;                 // density from its strain
+  double rho = what == PRESSURE ? s.density(value) : value;
+  if (what == HYDROSTATIC) {
+    const auto g = forces.on(i);
+    const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    if (size == 0.0)
+      lmp->error->one(FLERR, "Fsi/set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
+    const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
+    if (height > value) return false;
+    rho = s.density(s.rho0 * size * (value - height) + s.p0);
+  }
+  if (!(rho > 0.0 && rho < Range::LARGEST))
+    lmp->error->one(FLERR, "Fsi/set {} {} must be > 0",
+                    what == DENSITY ? "density" : name + ": density", rho);
+  atom->rmass[i] *= rho / atom->rho[i];
+  atom->rho[i] = rho;
+  return true;
+}
+
 void FSISet::command(int narg, char **arg)
 {
   if (domain->box_exist == 0) error->all(FLERR, "Fsi/set command before simulation box is defined");
@@ -327,46 +347,18 @@ void FSISet::command(int narg, char **arg)
   std::vector<double> each(atom->nlocal, number);
   if (variable >= 0) input->variable->compute_atom(variable, igroup, each.data(), 1, 0);
   bigint count = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & group->bitmask[igroup])
-      count += what == VOLUME
-          ? set_volume(i, each[i])
-          : set_density(i, what, names[what], each[i], fix_fsi->disc.state[atom->type[i]], forces);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & group->bitmask[igroup])) continue;
+    if (what == VOLUME && !(each[i] > 0.0))
+      error->one(FLERR, "Fsi/set volume {} must be > 0", each[i]);
+    if (what == VOLUME) atom->rmass[i] = atom->rho[i] * each[i];
+    count += what == VOLUME ||
+        set_density(lmp, i, what, names[what], each[i], fix_fsi->disc.state[atom->type[i]], forces);
+  }
   const bigint all = count_of(count, world);
   if (all == 0 && comm->me == 0)
     error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", group_name, names[what], given);
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", what == VOLUME ? "mass" : "density",
                    all);
-}
-
-bool FSISet::set_volume(int i, double volume)
-{
-  if (!(volume > 0.0)) error->one(FLERR, "Fsi/set volume {} must be > 0", volume);
-  atom->rmass[i] = atom->rho[i] * volume;
-  return true;
-}
-
-// whether it has been set
-bool FSISet::set_density(int i, int what, const std::string &name, double value, const State &s,
-                         const BodyForces &forces)
-{
-  if (s.species == NONE || s.species == RIGID) return false;    // walls: from the fluid
-  if (s.form == TOTAL_LAGRANGIAN) return false;                 // density from its strain
-  double rho = what == PRESSURE ? s.density(value) : value;
-  if (what == HYDROSTATIC) {
-    const auto g = forces.on(i);
-    const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-    if (size == 0.0)
-      error->one(FLERR, "Fsi/set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
-    const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
-    if (height > value) return false;
-    rho = s.density(s.rho0 * size * (value - height) + s.p0);
-  }
-  if (!(rho > 0.0 && rho < Range::LARGEST))
-    error->one(FLERR, "Fsi/set {} {} must be > 0", what == DENSITY ? "density" : name + ": density",
-               rho);
-  atom->rmass[i] *= rho / atom->rho[i];
-  atom->rho[i] = rho;
-  return true;
 }

@@ -17,6 +17,7 @@ CommandStyle(fsi/clamp,FSIClamp);
 CommandStyle(fsi/displace,FSIDisplace);
 CommandStyle(fsi/dump,FSIDump);
 CommandStyle(fsi/material,FSIMaterial);
+CommandStyle(fsi/pack,FSIPack);
 CommandStyle(fsi/run,FSIRun);
 CommandStyle(fsi/set,FSISet);
 // clang-format on
@@ -27,15 +28,7 @@ CommandStyle(fsi/set,FSISet);
 
 #include "command.h"
 
-#include <string>
-#include <vector>
-
 namespace LAMMPS_NS {
-namespace FSI {
-  class BodyForces;
-  struct Discretization;
-  struct State;
-}    // namespace FSI
 
 // fsi/clamp free-group-ID clamp-group-ID: particles of a body in the first group that are within
 // a spacing of its particles in the second one go over to that. Held particles act as a clamp a
@@ -51,14 +44,9 @@ class FSIDisplace : public Command {
  public:
   FSIDisplace(class LAMMPS *lmp) : Command(lmp) {}
   void command(int, char **) override;
-
- private:
-  template <class IsFluid, class IsBody>
-  std::vector<double> find_covered(const FSI::Discretization &, IsFluid, IsBody, double *sum) const;
 };
 
-// fsi/run time keyword value ...: runs until that time. Keywords are those of the fix fsi/dt that
-// it makes if there is none.
+// fsi/run time keyword value ...: runs until that time. Keywords: of the fix fsi/dt that it makes
 class FSIRun : public Command {
  public:
   FSIRun(class LAMMPS *lmp) : Command(lmp) {}
@@ -81,16 +69,19 @@ class FSIMaterial : public Command {
   void command(int, char **) override;
 };
 
+// fsi/pack body-ID fluid-ID region ID | stl FILE | outline FILE [still group-ID] [steps N]: moves
+// the particles of a body and of the fluid around it until both fit the surface between them.
+class FSIPack : public Command {
+ public:
+  FSIPack(class LAMMPS *lmp) : Command(lmp) {}
+  void command(int, char **) override;
+};
+
 // fsi/set group-ID keyword values ...: initial density of particles, once, before a run.
 class FSISet : public Command {
  public:
   FSISet(class LAMMPS *lmp) : Command(lmp) {}
   void command(int, char **) override;
-
- private:
-  bool set_volume(int i, double volume);
-  bool set_density(int i, int what, const std::string &name, double value, const FSI::State &,
-                   const FSI::BodyForces &);
 };
 
 }    // namespace LAMMPS_NS

@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_pack_command.h"
+#include "fsi_commands.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -52,10 +52,6 @@ static constexpr double TAKES_PLACE = 0.75;
 // two that are nearer go apart to this: kernels do not see to it, their gradient is 0 at 0
 static constexpr double APART = 0.6;
 
-FSIPack::FSIPack(LAMMPS *lmp) : Command(lmp) {}
-
-FSIPack::~FSIPack() = default;
-
 // part of a cell that is inside a plane, whose distance from the cell's middle is r
 static double part_behind(double r, const double *normal, const double *size, int dim)
 {
@@ -77,343 +73,366 @@ static double part_behind(double r, const double *normal, const double *size, in
   return std::clamp(sum / product, 0.0, 1.0);
 }
 
-// of a cell, from its own distance, or those of its parts
-double FSIPack::volume_of_cell(const double *middle, const double *sides, double finest) const
-{
-  const int dim = domain->dimension;
-  double outward[3], square = 0.0, whole = 1.0;
-  for (int d = 0; d < dim; d++) {
-    square += sides[d] * sides[d];
-    whole *= sides[d];
-  }
-  const double half_diagonal = 0.5 * std::sqrt(square),
-               r = surface->distance(middle, 1.01 * half_diagonal, outward);
-  if (r >= half_diagonal) return 0.0;
-  if (r <= -half_diagonal) return whole;
-  if (half_diagonal <= finest) return whole * part_behind(r, outward, sides, dim);
-  const double half[3] = {0.5 * sides[0], 0.5 * sides[1], 0.5 * sides[2]};
-  double sum = 0.0;
-  for (int part = 0; part < (1 << dim); part++) {
-    double x[3] = {middle[0], middle[1], middle[2]};
-    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.5 : -0.5) * half[d];
-    sum += volume_of_cell(x, half, finest);
-  }
-  return sum;
-}
+namespace {
 
-// in the box and before planes without end, from cells that each rank has of its own
-double FSIPack::volume_inside() const
-{
-  const int dim = domain->dimension;
-  const double dx = disc->levels.back().dx;
-  double lo[3], hi[3], sides[3] = {}, x[3], sum = 0.0;
-  std::copy_n(domain->boxlo, 3, lo);
-  std::copy_n(domain->boxhi, 3, hi);
-  for (const auto &w : step->walls.wall) {
-    if (w.finite) continue;
-    double &end = w.side > 0.0 ? lo[w.axis] : hi[w.axis];
-    end = w.side > 0.0 ? std::max(end, w.position) : std::min(end, w.position);
+class Packing : protected Pointers {
+  const Discretization *disc = nullptr;
+  StepState *step = nullptr;
+  Ledger *ledger = nullptr;
+  std::unique_ptr<Surface> surface;
+  // bits of groups, 0: there is none; still: a part of the body that stays as it is
+  int body = 0, fluid = 0, still = 0, filler = 0, gone_at_once = 0, distant = 0;
+  double band = 0.0;    // from the surface, in which particles move
+
+  // of a cell, from its own distance, or those of its parts
+  double volume_of_cell(const double *middle, const double *sides, double finest) const
+  {
+    const int dim = domain->dimension;
+    double outward[3], square = 0.0, whole = 1.0;
+    for (int d = 0; d < dim; d++) {
+      square += sides[d] * sides[d];
+      whole *= sides[d];
+    }
+    const double half_diagonal = 0.5 * std::sqrt(square),
+                 r = surface->distance(middle, 1.01 * half_diagonal, outward);
+    if (r >= half_diagonal) return 0.0;
+    if (r <= -half_diagonal) return whole;
+    if (half_diagonal <= finest) return whole * part_behind(r, outward, sides, dim);
+    const double half[3] = {0.5 * sides[0], 0.5 * sides[1], 0.5 * sides[2]};
+    double sum = 0.0;
+    for (int part = 0; part < (1 << dim); part++) {
+      double x[3] = {middle[0], middle[1], middle[2]};
+      for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.5 : -0.5) * half[d];
+      sum += volume_of_cell(x, half, finest);
+    }
+    return sum;
   }
-  x[2] = 0.5 * (lo[2] + hi[2]);
-  int from[3] = {}, to[3] = {1, 1, 1};
-  // a whole number of cells, some four spacings wide, along each side
-  for (int d = 0; d < dim; d++) {
-    const int n = std::max(1, (int) std::ceil((hi[d] - lo[d]) / (4.0 * dx)));
-    sides[d] = (hi[d] - lo[d]) / n;
-    const auto first = [&](double place) {
-      return std::clamp((int) std::ceil((place - lo[d]) / sides[d] - 0.5), 0, n);
-    };
-    from[d] = first(domain->sublo[d]);
-    to[d] = first(domain->subhi[d]);
+
+  // in the box and before planes without end, from cells that each rank has of its own
+  double volume_inside() const
+  {
+    const int dim = domain->dimension;
+    const double dx = disc->levels.back().dx;
+    double lo[3], hi[3], sides[3] = {}, x[3], sum = 0.0;
+    std::copy_n(domain->boxlo, 3, lo);
+    std::copy_n(domain->boxhi, 3, hi);
+    for (const auto &w : step->walls.wall) {
+      if (w.finite) continue;
+      double &end = w.side > 0.0 ? lo[w.axis] : hi[w.axis];
+      end = w.side > 0.0 ? std::max(end, w.position) : std::min(end, w.position);
+    }
+    x[2] = 0.5 * (lo[2] + hi[2]);
+    int from[3] = {}, to[3] = {1, 1, 1};
+    // a whole number of cells, some four spacings wide, along each side
+    for (int d = 0; d < dim; d++) {
+      const int n = std::max(1, (int) std::ceil((hi[d] - lo[d]) / (4.0 * dx)));
+      sides[d] = (hi[d] - lo[d]) / n;
+      const auto first = [&](double place) {
+        return std::clamp((int) std::ceil((place - lo[d]) / sides[d] - 0.5), 0, n);
+      };
+      from[d] = first(domain->sublo[d]);
+      to[d] = first(domain->subhi[d]);
+    }
+    for (int c = from[2]; c < to[2]; c++)
+      for (int b = from[1]; b < to[1]; b++)
+        for (int a = from[0]; a < to[0]; a++) {
+          const int k[3] = {a, b, c};
+          for (int d = 0; d < dim; d++) x[d] = lo[d] + (k[d] + 0.5) * sides[d];
+          sum += volume_of_cell(x, sides, 0.25 * dx);
+        }
+    return sum_of(sum, world);
   }
-  for (int c = from[2]; c < to[2]; c++)
-    for (int b = from[1]; b < to[1]; b++)
-      for (int a = from[0]; a < to[0]; a++) {
-        const int k[3] = {a, b, c};
-        for (int d = 0; d < dim; d++) x[d] = lo[d] + (k[d] + 0.5) * sides[d];
-        sum += volume_of_cell(x, sides, 0.25 * dx);
-      }
-  return sum_of(sum, world);
-}
 
-double FSIPack::volume_of_still() const
-{
-  double sum = 0.0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & still) sum += atom->rmass[i] / disc->state[atom->type[i]].rho0;
-  return sum_of(sum, world);
-}
-
-// of the cell of a particle
-double FSIPack::part_inside(int i) const
-{
-  const double dx = disc->dx_of(atom->type[i]), sides[3] = {dx, dx, dx};
-  return volume_of_cell(atom->x[i], sides, 0.125 * dx) / std::pow(dx, domain->dimension);
-}
-
-// The n particles of a group that are deepest inside, of equals by place: the same on any ranks
-std::vector<char> FSIPack::deepest(int bit, double n) const
-{
-  std::vector<double> key(atom->nlocal, 1.0e9);
-  double outward[3];
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit) || !step->walls.is_before_planes(atom->x[i])) continue;
-    key[i] = std::floor(1.0e6 * surface->distance(atom->x[i], band, outward) / band + 0.5) +
-        part_by_place(atom->x[i], domain);
+  double volume_of_still() const
+  {
+    double sum = 0.0;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & still) sum += atom->rmass[i] / disc->state[atom->type[i]].rho0;
+    return sum_of(sum, world);
   }
-  const double limit = limit_of(key, n, -2.0e6, 2.0e6, world);
-  std::vector<char> chosen(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; i++) chosen[i] = key[i] < limit;
-  return chosen;
-}
 
-// Which particles are the body and which the fluid; others fill the side that has none while both
-// are packed
-void FSIPack::choose(double volume)
-{
-  double in_fluid = 0.0, in_body = 0.0, cell = 0.0;    // cells that are inside; of one of the body
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (atom->mask[i] & fluid) in_fluid += part_inside(i);
-    if (!(atom->mask[i] & body)) continue;
-    if (step->walls.is_before_planes(atom->x[i])) in_body += part_inside(i);
-    cell = std::pow(disc->dx_of(atom->type[i]), domain->dimension);
+  // of the cell of a particle
+  double part_inside(int i) const
+  {
+    const double dx = disc->dx_of(atom->type[i]), sides[3] = {dx, dx, dx};
+    return volume_of_cell(atom->x[i], sides, 0.125 * dx) / std::pow(dx, domain->dimension);
   }
-  in_fluid = sum_of(in_fluid, world);
-  in_body = sum_of(in_body, world);
-  cell = over_ranks(cell, MPI_MAX, world);
-  const double wanted = body && cell > 0.0 ? std::round(volume / cell) : 0.0;
-  if (body && (wanted < 1.0 || in_body * cell < COVERED * volume))
-    error->all(FLERR,
-               "Fsi/pack: {} holds {:g} particles of the body, its lattice has {:.4g} inside: "
-               "expected one that goes on beyond the surface",
-               surface->name(), wanted, in_body);
-  const std::vector<char> none(atom->nlocal, 0);
-  const auto inside = body ? deepest(body, wanted) : none,
-             displaced = fluid ? deepest(fluid, std::round(in_fluid)) : none;
-  // filler: on the outside where there is no fluid, on the inside where there is no body
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & fluid && displaced[i])
-      atom->mask[i] ^= fluid | (body ? gone_at_once : filler);
-    else if (atom->mask[i] & body && !step->walls.is_before_planes(atom->x[i])) {
-      if (part_inside(i) < 0.5) atom->mask[i] ^= body | gone_at_once;
-    } else if (atom->mask[i] & body && !inside[i])
-      atom->mask[i] ^= body | filler;
-  renew_ghosts(lmp);
-  const Cells staying(atom, disc->dim, disc->dx, [this](int i) {
-    return (atom->mask[i] & (fluid | still)) != 0;
-  });
-  const double reach = band + disc->largest_cut;    // what moves sees no end of it
-  double outward[3];
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & filler)) continue;
-    bool fills = surface->distance(atom->x[i], reach, outward) < reach;
-    const double least = TAKES_PLACE * disc->dx_of(atom->type[i]);
-    if (fills)
-      staying.around(atom->x[i], [&](int, double rsq) {
-        fills = fills && rsq > least * least;
-      });
-    if (!fills) atom->mask[i] ^= filler | gone_at_once;
-  }
-}
 
-// A particle stays on its side, half a spacing from the surface, in a corner from both faces;
-// returns how far off it is, 0 if it had to be moved
-double FSIPack::keep_off(int i, double side)
-{
-  double outward[3], *const x = atom->x[i];
-  const double least = BESIDE * disc->dx_of(atom->type[i]);
-  for (int k = 0; k < domain->dimension + 1; k++) {
-    const double r = surface->distance(atom->x[i], band, outward);
-    if (side * r >= least || std::fabs(r) >= band) return k == 0 ? std::fabs(r) : 0.0;
-    for (int d = 0; d < domain->dimension; d++) x[d] += (side * least - r) * outward[d];
-  }
-  return 0.0;
-}
-
-// all of the body have the same mass, together that of its volume
-void FSIPack::set_masses(double volume)
-{
-  const auto in_body = [this](int i) {
-    return (atom->mask[i] & body) != 0;
-  };
-  const bigint n = find_particles(atom, world, [&](int i) {
-                     return in_body(i) && step->walls.is_before_planes(atom->x[i]);
-                   }).count;
-  if (comm->me == 0)
-    utils::logmesg(lmp, "  fsi/pack: {} encloses {:.8g}, in {} particles of {:.8g} each\n",
-                   surface->name(), volume, n, volume / n);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (in_body(i)) atom->rmass[i] = disc->state[atom->type[i]].rho0 * volume / n;
-}
-
-void FSIPack::remove(const std::string &name)
-{
-  const int bit = group->bitmask[group->find(name)];
-  if (find_particles(atom, world, [&](int i) {
-        return (atom->mask[i] & bit) != 0;
-      }).count)
-    input->one(fmt::format("delete_atoms group {} compress no", name));
-  input->one(fmt::format("group {} delete", name));
-}
-
-// Also finds how far off the surface all that move are
-std::vector<double> FSIPack::part(const std::vector<double> &mobility,
-                                  const std::vector<double> &side)
-{
-  const int *const type = atom->type;
-  const Cells all(atom, disc->dim, disc->dx, every);
-  std::vector<std::array<double, 3>> shift(atom->nlocal, {0.0, 0.0, 0.0});
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (mobility[i] <= 0.0) continue;
-    all.around(atom->x[i], [&](int j, double rsq) {
-      const double least = 0.5 * APART * (disc->dx_of(type[i]) + disc->dx_of(type[j]));
-      if (i == j || rsq >= least * least) return;
-      // those at one place along an axis
-      const double r = std::sqrt(rsq), before = atom->tag[i] < atom->tag[j] ? -1.0 : 1.0;
-      const bool same = r < 1.0e-6 * least;
-      for (int d = 0; d < domain->dimension; d++)
-        shift[i][d] += 0.5 * (least - r) *
-            (same ? (d == 0 ? before : 0.0) : (atom->x[i][d] - atom->x[j][d]) / r);
-    });
-  }
-  std::vector<double> off(atom->nlocal, 0.0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (mobility[i] <= 0.0) continue;
-    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += shift[i][d];
-    off[i] = keep_off(i, side[i]);
-  }
-  comm->forward_comm();
-  return off;
-}
-
-// Sweeps until the residue stays as it is, or as many as are given
-void FSIPack::pack(int steps)
-{
-  double residue[2] = {}, before = 1.0e300;    // the largest, and the root of the mean square
-  bigint n = 0;
-  int done = 0;
-  double told = platform::walltime();
-  while (done < steps) {
-    renew_ghosts(lmp);
-    step->gather_walls(lmp);
-    std::vector<double> mobility(atom->nlocal, 0.0), side(atom->nlocal, 0.0);
-    std::vector<char> judged(atom->nlocal, 0);
+  // The n particles of a group that are deepest inside, of equals by place: the same on any ranks
+  std::vector<char> deepest(int bit, double n) const
+  {
+    std::vector<double> key(atom->nlocal, 1.0e9);
     double outward[3];
     for (int i = 0; i < atom->nlocal; i++) {
-      int &mask = atom->mask[i];
-      if (!(mask & (body | fluid | filler)) || mask & distant ||
-          !step->walls.is_before_planes(atom->x[i]))
-        continue;
-      const double r = surface->distance(atom->x[i], band, outward),
-                   dx = disc->dx_of(atom->type[i]);
-      if (std::fabs(r) >= band) mask |= distant;    // and stays where it is
-      mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
-      judged[i] = mobility[i] == 1.0 && !(mask & filler);
-      side[i] = mask & body ? -1.0 : mask & fluid ? 1.0 : r < 0.0 ? -1.0 : 1.0;
+      if (!(atom->mask[i] & bit) || !step->walls.is_before_planes(atom->x[i])) continue;
+      key[i] = std::floor(1.0e6 * surface->distance(atom->x[i], band, outward) / band + 0.5) +
+          part_by_place(atom->x[i], domain);
     }
-    const auto off = part(mobility, side);
-    constexpr double NEVER = BESIDE + ROUND * Settling::LONGEST;    // there in a round
-    Settling settling(lmp, *disc, *step, *ledger, mobility, judged, [&](int i) {
-      if (off[i] <= NEVER * disc->dx_of(atom->type[i])) keep_off(i, side[i]);
-    });
-    settling.run(std::min(ROUND, steps - done));
-    done += std::min(ROUND, steps - done);
-    const auto &here = settling.residue();
-    n = count_of(here.n, world);
-    residue[0] = over_ranks(here.largest, MPI_MAX, world);
-    residue[1] = n ? std::sqrt(sum_of(here.squares, world) / n) : 0.0;
-    if (comm->me == 0 && platform::walltime() - told > SECONDS) {
-      told = platform::walltime();
-      utils::logmesg(lmp, "  fsi/pack: {} of {} steps, residue {:.3g}, rms {:.3g}\n", done, steps,
-                     residue[0], residue[1]);
-    }
-    if (done % ROUND_OF_LOOKS) continue;
-    if (residue[1] > CALM * before) break;
-    before = residue[1];
+    const double limit = limit_of(key, n, -2.0e6, 2.0e6, world);
+    std::vector<char> chosen(atom->nlocal);
+    for (int i = 0; i < atom->nlocal; i++) chosen[i] = key[i] < limit;
+    return chosen;
   }
-  if (comm->me == 0)
-    utils::logmesg(
-        lmp,
-        "  fsi/pack: {} steps; dx |sum V grad W| of {} particles within {:g} spacings of "
-        "the surface: {:.3g} at most, {:.3g} rms\n",
-        done, n, BAND - EDGE, residue[0], residue[1]);
-  if (comm->me == 0 && residue[1] > LOOSE)
-    error->warning(FLERR,
-                   "fsi/pack: the residue stays at {:.2g}: are there particles of another body in "
-                   "place of what is packed, or too few or too many?",
-                   residue[1]);
-}
 
-// packing would strain them
-void FSIPack::refuse_bonded() const
-{
-  const auto *const bonds =
-      dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
-  if (!bonds) return;
-  const auto bonded = find_particles(atom, world, [&](int i) {
-    return atom->mask[i] & body && bonds->has(i);
-  });
-  if (bonded.count)
-    error->all(FLERR,
-               "Fsi/pack: {} particles of the body, the first of them atom {}, have bonds since an "
-               "earlier run: expected a body before its first run, if only run 0",
-               bonded.count, bonded.first);
-}
+  // Which particles are the body and which the fluid; others fill a side that has none meanwhile
+  void choose(double volume)
+  {
+    double in_fluid = 0.0, in_body = 0.0,
+           cell = 0.0;    // cells that are inside; of one of the body
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (atom->mask[i] & fluid) in_fluid += part_inside(i);
+      if (!(atom->mask[i] & body)) continue;
+      if (step->walls.is_before_planes(atom->x[i])) in_body += part_inside(i);
+      cell = std::pow(disc->dx_of(atom->type[i]), domain->dimension);
+    }
+    in_fluid = sum_of(in_fluid, world);
+    in_body = sum_of(in_body, world);
+    cell = over_ranks(cell, MPI_MAX, world);
+    const double wanted = body && cell > 0.0 ? std::round(volume / cell) : 0.0;
+    if (body && (wanted < 1.0 || in_body * cell < COVERED * volume))
+      error->all(FLERR,
+                 "Fsi/pack: {} holds {:g} particles of the body, its lattice has {:.4g} inside: "
+                 "expected one that goes on beyond the surface",
+                 surface->name(), wanted, in_body);
+    const std::vector<char> none(atom->nlocal, 0);
+    const auto inside = body ? deepest(body, wanted) : none,
+               displaced = fluid ? deepest(fluid, std::round(in_fluid)) : none;
+    // filler: on the outside where there is no fluid, on the inside where there is no body
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & fluid && displaced[i])
+        atom->mask[i] ^= fluid | (body ? gone_at_once : filler);
+      else if (atom->mask[i] & body && !step->walls.is_before_planes(atom->x[i])) {
+        if (part_inside(i) < 0.5) atom->mask[i] ^= body | gone_at_once;
+      } else if (atom->mask[i] & body && !inside[i])
+        atom->mask[i] ^= body | filler;
+    renew_ghosts(lmp);
+    const Cells staying(atom, disc->dim, disc->dx, [this](int i) {
+      return (atom->mask[i] & (fluid | still)) != 0;
+    });
+    const double reach = band + disc->largest_cut;    // what moves sees no end of it
+    double outward[3];
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & filler)) continue;
+      bool fills = surface->distance(atom->x[i], reach, outward) < reach;
+      const double least = TAKES_PLACE * disc->dx_of(atom->type[i]);
+      if (fills)
+        staying.around(atom->x[i], [&](int, double rsq) {
+          fills = fills && rsq > least * least;
+        });
+      if (!fills) atom->mask[i] ^= filler | gone_at_once;
+    }
+  }
+
+  // A particle stays on its side, half a spacing from the surface, in a corner from both faces;
+  // returns how far off it is, 0 if it had to be moved
+  double keep_off(int i, double side)
+  {
+    double outward[3], *const x = atom->x[i];
+    const double least = BESIDE * disc->dx_of(atom->type[i]);
+    for (int k = 0; k < domain->dimension + 1; k++) {
+      const double r = surface->distance(atom->x[i], band, outward);
+      if (side * r >= least || std::fabs(r) >= band) return k == 0 ? std::fabs(r) : 0.0;
+      for (int d = 0; d < domain->dimension; d++) x[d] += (side * least - r) * outward[d];
+    }
+    return 0.0;
+  }
+
+  // all of the body have the same mass, together that of its volume
+  void set_masses(double volume)
+  {
+    const auto in_body = [this](int i) {
+      return (atom->mask[i] & body) != 0;
+    };
+    const bigint n = find_particles(atom, world, [&](int i) {
+                       return in_body(i) && step->walls.is_before_planes(atom->x[i]);
+                     }).count;
+    if (comm->me == 0)
+      utils::logmesg(lmp, "  fsi/pack: {} encloses {:.8g}, in {} particles of {:.8g} each\n",
+                     surface->name(), volume, n, volume / n);
+    for (int i = 0; i < atom->nlocal; i++)
+      if (in_body(i)) atom->rmass[i] = disc->state[atom->type[i]].rho0 * volume / n;
+  }
+
+  void remove(const std::string &name)
+  {
+    const int bit = group->bitmask[group->find(name)];
+    if (find_particles(atom, world, [&](int i) {
+          return (atom->mask[i] & bit) != 0;
+        }).count)
+      input->one(fmt::format("delete_atoms group {} compress no", name));
+    input->one(fmt::format("group {} delete", name));
+  }
+
+  // Also finds how far off the surface all that move are
+  std::vector<double> part(const std::vector<double> &mobility, const std::vector<double> &side)
+  {
+    const int *const type = atom->type;
+    const Cells all(atom, disc->dim, disc->dx, every);
+    std::vector<std::array<double, 3>> shift(atom->nlocal, {0.0, 0.0, 0.0});
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (mobility[i] <= 0.0) continue;
+      all.around(atom->x[i], [&](int j, double rsq) {
+        const double least = 0.5 * APART * (disc->dx_of(type[i]) + disc->dx_of(type[j]));
+        if (i == j || rsq >= least * least) return;
+        // those at one place along an axis
+        const double r = std::sqrt(rsq), before = atom->tag[i] < atom->tag[j] ? -1.0 : 1.0;
+        const bool same = r < 1.0e-6 * least;
+        for (int d = 0; d < domain->dimension; d++)
+          shift[i][d] += 0.5 * (least - r) *
+              (same ? (d == 0 ? before : 0.0) : (atom->x[i][d] - atom->x[j][d]) / r);
+      });
+    }
+    std::vector<double> off(atom->nlocal, 0.0);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (mobility[i] <= 0.0) continue;
+      for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += shift[i][d];
+      off[i] = keep_off(i, side[i]);
+    }
+    comm->forward_comm();
+    return off;
+  }
+
+  // Sweeps until the residue stays as it is, or as many as are given
+  void sweep(int steps)
+  {
+    double residue[2] = {}, before = 1.0e300;    // the largest, and the root of the mean square
+    bigint n = 0;
+    int done = 0;
+    double told = platform::walltime();
+    while (done < steps) {
+      renew_ghosts(lmp);
+      step->gather_walls(lmp);
+      std::vector<double> mobility(atom->nlocal, 0.0), side(atom->nlocal, 0.0);
+      std::vector<char> judged(atom->nlocal, 0);
+      double outward[3];
+      for (int i = 0; i < atom->nlocal; i++) {
+        int &mask = atom->mask[i];
+        if (!(mask & (body | fluid | filler)) || mask & distant ||
+            !step->walls.is_before_planes(atom->x[i]))
+          continue;
+        const double r = surface->distance(atom->x[i], band, outward),
+                     dx = disc->dx_of(atom->type[i]);
+        if (std::fabs(r) >= band) mask |= distant;    // and stays where it is
+        mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
+        judged[i] = mobility[i] == 1.0 && !(mask & filler);
+        side[i] = mask & body ? -1.0 : mask & fluid ? 1.0 : r < 0.0 ? -1.0 : 1.0;
+      }
+      const auto off = part(mobility, side);
+      constexpr double NEVER = BESIDE + ROUND * Settling::LONGEST;    // there in a round
+      Settling settling(lmp, *disc, *step, *ledger, mobility, judged, [&](int i) {
+        if (off[i] <= NEVER * disc->dx_of(atom->type[i])) keep_off(i, side[i]);
+      });
+      settling.run(std::min(ROUND, steps - done));
+      done += std::min(ROUND, steps - done);
+      const auto &here = settling.residue();
+      n = count_of(here.n, world);
+      residue[0] = over_ranks(here.largest, MPI_MAX, world);
+      residue[1] = n ? std::sqrt(sum_of(here.squares, world) / n) : 0.0;
+      if (comm->me == 0 && platform::walltime() - told > SECONDS) {
+        told = platform::walltime();
+        utils::logmesg(lmp, "  fsi/pack: {} of {} steps, residue {:.3g}, rms {:.3g}\n", done, steps,
+                       residue[0], residue[1]);
+      }
+      if (done % ROUND_OF_LOOKS) continue;
+      if (residue[1] > CALM * before) break;
+      before = residue[1];
+    }
+    if (comm->me == 0)
+      utils::logmesg(
+          lmp,
+          "  fsi/pack: {} steps; dx |sum V grad W| of {} particles within {:g} spacings of "
+          "the surface: {:.3g} at most, {:.3g} rms\n",
+          done, n, BAND - EDGE, residue[0], residue[1]);
+    if (comm->me == 0 && residue[1] > LOOSE)
+      error->warning(
+          FLERR,
+          "fsi/pack: the residue stays at {:.2g}: are there particles of another body in "
+          "place of what is packed, or too few or too many?",
+          residue[1]);
+  }
+
+  // packing would strain them
+  void refuse_bonded() const
+  {
+    const auto *const bonds =
+        dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
+    if (!bonds) return;
+    const auto bonded = find_particles(atom, world, [&](int i) {
+      return atom->mask[i] & body && bonds->has(i);
+    });
+    if (bonded.count)
+      error->all(
+          FLERR,
+          "Fsi/pack: {} particles of the body, the first of them atom {}, have bonds since an "
+          "earlier run: expected a body before its first run, if only run 0",
+          bonded.count, bonded.first);
+  }
+
+ public:
+  explicit Packing(LAMMPS *lmp) : Pointers(lmp) {}
+
+  void pack(int narg, char **arg)
+  {
+    if (domain->box_exist == 0)
+      error->all(FLERR, "Fsi/pack command before simulation box is defined");
+    std::string names[3], region, stl, outline;
+    int steps;
+    Keywords keywords(lmp, "fsi/pack");
+    keywords.argument("body group-ID").word(names[0], "");
+    keywords.argument("fluid group-ID").word(names[1], "");
+    keywords.key("region").word(region, "");
+    keywords.key("stl").word(stl, "");
+    keywords.key("outline").word(outline, "");
+    keywords.key("still").word(names[2], "NULL");
+    keywords.key("steps").integer(steps, 1000, 0);
+    keywords.parse(narg, arg);
+    int *const bits[3] = {&body, &fluid, &still};
+    for (int k = 0; k < 3; k++)
+      if (names[k] != "NULL") *bits[k] = group->bitmask[group_of(lmp, "Fsi/pack", names[k])];
+    if (!body && !fluid) error->all(FLERR, "Fsi/pack NULL NULL has nothing to pack");
+    if (!region.empty() + !stl.empty() + !outline.empty() != 1)
+      error->all(FLERR, "Fsi/pack takes one of region, stl and outline");
+    surface = !region.empty() ? surface_of_region(lmp, region)
+        : !stl.empty()        ? surface_of_stl(lmp, stl)
+                              : surface_of_outline(lmp, outline);
+    auto *const fix = FixFSI::find(lmp, "Fsi/pack");
+    disc = &fix->disc;
+    step = &fix->step;
+    ledger = &fix->ledger;
+    lmp->init();
+    refuse_bonded();
+    double finest = INFINITY;    // where levels meet only their events move what is there
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & (fluid ? fluid : body))
+        finest = std::min(finest, disc->dx_of(atom->type[i]));
+    band = BAND * std::min(over_ranks(finest, MPI_MIN, world), disc->dx);
+    renew_ghosts(lmp);
+    step->gather_walls(lmp);
+    const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";
+    filler = group->bitmask[group->find_or_create(fills.c_str())];
+    gone_at_once = group->bitmask[group->find_or_create(goes.c_str())];
+
+    const double sampled = volume_inside(), of_faces = surface->volume();
+    if (of_faces >= 0.0 && std::fabs(of_faces - sampled) > 0.01 * std::max(of_faces, sampled))
+      error->all(FLERR,
+                 "Fsi/pack: {} encloses {:g}, but its faces {:g}: expected a surface that does not "
+                 "cross itself, inside the box",
+                 surface->name(), sampled, of_faces);
+    const double volume = (of_faces >= 0.0 ? of_faces : sampled) - volume_of_still();
+    choose(volume);
+    remove(goes);
+    const std::string away = "FSI_PACK_FAR";
+    distant = group->bitmask[group->find_or_create(away.c_str())];
+    sweep(steps);
+    input->one(fmt::format("group {} delete", away));
+    if (body) set_masses(volume);
+    remove(fills);
+  }
+};
+
+}    // namespace
 
 void FSIPack::command(int narg, char **arg)
 {
-  if (domain->box_exist == 0)
-    error->all(FLERR, "Fsi/pack command before simulation box is defined");
-  std::string names[3], region, stl, outline;
-  int steps;
-  Keywords keywords(lmp, "fsi/pack");
-  keywords.argument("body group-ID").word(names[0], "");
-  keywords.argument("fluid group-ID").word(names[1], "");
-  keywords.key("region").word(region, "");
-  keywords.key("stl").word(stl, "");
-  keywords.key("outline").word(outline, "");
-  keywords.key("still").word(names[2], "NULL");
-  keywords.key("steps").integer(steps, 1000, 0);
-  keywords.parse(narg, arg);
-  int *const bits[3] = {&body, &fluid, &still};
-  for (int k = 0; k < 3; k++)
-    if (names[k] != "NULL") *bits[k] = group->bitmask[group_of(lmp, "Fsi/pack", names[k])];
-  if (!body && !fluid) error->all(FLERR, "Fsi/pack NULL NULL has nothing to pack");
-  if (!region.empty() + !stl.empty() + !outline.empty() != 1)
-    error->all(FLERR, "Fsi/pack takes one of region, stl and outline");
-  surface = !region.empty() ? surface_of_region(lmp, region)
-      : !stl.empty()        ? surface_of_stl(lmp, stl)
-                            : surface_of_outline(lmp, outline);
-  auto *const fix = FixFSI::find(lmp, "Fsi/pack");
-  disc = &fix->disc;
-  step = &fix->step;
-  ledger = &fix->ledger;
-  lmp->init();
-  refuse_bonded();
-  double finest = INFINITY;    // where levels meet only their events move what is there
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & (fluid ? fluid : body))
-      finest = std::min(finest, disc->dx_of(atom->type[i]));
-  band = BAND * std::min(over_ranks(finest, MPI_MIN, world), disc->dx);
-  renew_ghosts(lmp);
-  step->gather_walls(lmp);
-  const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";
-  filler = group->bitmask[group->find_or_create(fills.c_str())];
-  gone_at_once = group->bitmask[group->find_or_create(goes.c_str())];
-
-  const double sampled = volume_inside(), of_faces = surface->volume();
-  if (of_faces >= 0.0 && std::fabs(of_faces - sampled) > 0.01 * std::max(of_faces, sampled))
-    error->all(FLERR,
-               "Fsi/pack: {} encloses {:g}, but its faces {:g}: expected a surface that does not "
-               "cross itself, inside the box",
-               surface->name(), sampled, of_faces);
-  const double volume = (of_faces >= 0.0 ? of_faces : sampled) - volume_of_still();
-  choose(volume);
-  remove(goes);
-  const std::string away = "FSI_PACK_FAR";
-  distant = group->bitmask[group->find_or_create(away.c_str())];
-  pack(steps);
-  input->one(fmt::format("group {} delete", away));
-  if (body) set_masses(volume);
-  remove(fills);
+  Packing(lmp).pack(narg, arg);
 }

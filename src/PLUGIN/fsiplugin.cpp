@@ -38,7 +38,6 @@
 #include "fix_fsi_wall_particle.h"
 #include "fix_fsi_watch.h"
 #include "fsi_commands.h"
-#include "fsi_pack_command.h"
 #include "lammps.h"
 #include "library.h"
 #include "pair_fsi_fluid_omp.h"
