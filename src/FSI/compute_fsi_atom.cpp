@@ -62,21 +62,11 @@ void ComputeFSIAtom::init()
 {
   FixFSI::find(lmp, "Compute fsi/atom");
   const auto *const stress = first_of(fixes_of<FixFSIStress>(lmp));
-  if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
-      (!stress || !stress->plastic))
-    refuse(error, Refused::PLASTIC_STRAIN);
   for (const int q : quantity)
-    if (q >= SHEAR_RATE && !facts_of_fluids(lmp).style)
+    if (q == PLASTIC && (!stress || !stress->plastic))
+      refuse(error, Refused::PLASTIC_STRAIN);
+    else if (q >= SHEAR_RATE && !facts_of_fluids(lmp).style)
       refuse(error, Refused::SHEAR_RATE, q == SHEAR_RATE ? "shear/rate" : "viscosity");
-}
-
-void ComputeFSIAtom::grow()
-{
-  if (atom->nmax <= nmax) return;
-  nmax = atom->nmax;
-  memory->destroy(array_atom);
-  memory->create(array_atom, nmax, (int) quantity.size(), "fsi/atom:array_atom");
-  if (!size_peratom_cols) vector_atom = array_atom[0];
 }
 
 void ComputeFSIAtom::compute_peratom()
@@ -85,9 +75,19 @@ void ComputeFSIAtom::compute_peratom()
   const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom");
   disc = &fix_fsi->disc;
   step = &fix_fsi->step;
-  grow();
-  const bool sums = std::find(quantity.begin(), quantity.end(), PSI) != quantity.end();
-  auto *const fluid = needs_shear();
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(array_atom);
+    memory->create(array_atom, nmax, (int) quantity.size(), "fsi/atom:array_atom");
+    if (!size_peratom_cols) vector_atom = array_atom[0];
+  }
+  const auto is_wanted = [this](int q) {
+    return std::find(quantity.begin(), quantity.end(), q) != quantity.end();
+  };
+  const bool sums = is_wanted(PSI), rates = is_wanted(SHEAR_RATE) || is_wanted(VISCOSITY);
+  // the style whose velocity gradients something needs; or null
+  auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
+  if (fluid && !rates && !(tensor && fluid->has_laminar())) fluid = nullptr;
   if (sums || fluid) comm->forward_comm();    // ghosts stand where they were in mid-step
   if (sums) {
     psi.resize(atom->nmax);
@@ -104,16 +104,6 @@ void ComputeFSIAtom::compute_peratom()
     if (chosen) find(i, of);
     for (size_t k = 0; k < quantity.size(); k++) array_atom[i][k] = of[quantity[k]];
   }
-}
-
-// the style whose velocity gradients something needs; or null
-PairFSIFluid *ComputeFSIAtom::needs_shear() const
-{
-  auto *const fluid = first_of(pairs_of<PairFSIFluid>(lmp));
-  const bool wanted = std::any_of(quantity.begin(), quantity.end(), [](int q) {
-    return q >= SHEAR_RATE;
-  });
-  return fluid && (wanted || (tensor && fluid->has_laminar())) ? fluid : nullptr;
 }
 
 // Cauchy stress sigma = -p I + S, tension positive, of fluids S = 2 eta D; sigma_zz of plane strain

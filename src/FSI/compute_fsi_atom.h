@@ -59,8 +59,6 @@ class ComputeFSIAtom : public Compute {
 
   const FSI::Shear *shear = nullptr;    // null: nothing needs it
 
-  class PairFSIFluid *needs_shear() const;
-  void grow();
   void find(int i, double *of) const;    // all quantities of an atom that something needs
 };
 

@@ -21,6 +21,7 @@
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_part.h"
+#include "math_extra.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -31,7 +32,7 @@ using namespace FSI;
 
 ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
-  FSI::Keywords keywords(lmp, "compute fsi/force");
+  Keywords keywords(lmp, "compute fsi/force");
   keywords.key("split").logical(split, false);
   keywords.parse(narg - 3, arg + 3);
   vector_flag = 1;
@@ -50,7 +51,7 @@ void ComputeFSIForce::init()
 bool ComputeFSIForce::counts(int i) const
 {
   const int species = disc->state[atom->type[i]].species;
-  return (atom->mask[i] & groupbit) && (species == FSI::SOLID || species == FSI::RIGID);
+  return (atom->mask[i] & groupbit) && (species == SOLID || species == RIGID);
 }
 
 // a point inside the body: where its first particle is when lists are new, since it may go far
@@ -70,18 +71,17 @@ void ComputeFSIForce::find_body()
 }
 
 // Forces on ghosts count where they are, before they are sent home: the sum is the same. Without
-// newton ghosts get none. Lever arms are those of the nearest periodic image, from a point inside
-// the body.
+// newton ghosts get none. Lever arms: of the nearest periodic image, from a point inside the body.
 void ComputeFSIForce::add(int i, const double *f, double sign, int where)
 {
   double r[3];
   for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - origin[d];
-  FSI::to_nearest_image(*domain, r);
-  const int dim = disc->dim;
+  to_nearest_image(*domain, r);
+  double torque[3];
+  MathExtra::cross3(r, f, torque);
   for (int d = 0; d < 3; d++) {
-    const int a = (d + 1) % 3, b = (d + 2) % 3;
-    if (d < dim) sum[where + d] += sign * f[d];
-    if (d == 2 || dim == 3) sum[where + 3 + d] += sign * (r[a] * f[b] - r[b] * f[a]);
+    if (d < disc->dim) sum[where + d] += sign * f[d];
+    if (d == 2 || disc->dim == 3) sum[where + 3 + d] += sign * torque[d];
     if (where == FORCE && sign < 0.0 && i < atom->nlocal) sum[MOMENT + d] += atom->rmass[i] * r[d];
   }
 }
@@ -117,14 +117,10 @@ void ComputeFSIForce::compute_vector()
   double all[NSUM];
   MPI_Allreduce(sum, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
   for (int k = 0; k < size_vector; k += 6) {
-    const double *const f = all + k;
-    for (int d = 0; d < 3; d++) {
-      const int a = (d + 1) % 3, b = (d + 2) % 3;
-      vector[k + d] = f[d];
-      vector[k + 3 + d] = f[3 + d];
-      if (all[MASS] > 0.0)
-        vector[k + 3 + d] -= (all[MOMENT + a] * f[b] - all[MOMENT + b] * f[a]) / all[MASS];
-    }
+    double torque[3];    // about the origin
+    MathExtra::cross3(all + MOMENT, all + k, torque);
+    std::copy_n(all + k, 6, vector + k);
+    for (int d = 0; d < 3 && all[MASS] > 0.0; d++) vector[k + 3 + d] -= torque[d] / all[MASS];
   }
   if (all[MASS] == 0.0) return;    // no such particle in the group
   for (int d = 0; d < 3; d++) origin[d] += all[MOMENT + d] / all[MASS];

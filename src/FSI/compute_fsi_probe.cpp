@@ -191,8 +191,7 @@ void ComputeFSIProbe::setup()
   }
 }
 
-// points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line,
-// with both ends
+// points: half a spacing apart on a patch, in mid-cell; a quarter along a line, with both ends
 void ComputeFSIProbe::set_grid(Place &place, double dx) const
 {
   double length = 0.0;
@@ -260,8 +259,7 @@ double ComputeFSIProbe::Place::distance_sq(const double *x, int dim) const
   return rsq;
 }
 
-// particles that may come within the kernel's support of a place before the neighbor lists are
-// built anew
+// particles that may come within the kernel's support of a place before there are new lists
 void ComputeFSIProbe::find_near()
 {
   listed = neighbor->lastcall;
@@ -308,16 +306,6 @@ std::vector<int> ComputeFSIProbe::walls_near(const Walls &walls, std::vector<dou
   return mask;
 }
 
-// volume of particle i at x. Behind a mirror wall a solid is not there, but its image is; walls of
-// particles have no images, and are there
-double ComputeFSIProbe::volume_at(const double *x, int i, const Walls &walls) const
-{
-  double vol = atom->rmass[i] / atom->rho[i];
-  if (disc->state[atom->type[i]].species == SOLID)
-    for (const auto &w : walls.wall) vol *= w.before(x, disc->dx_of(atom->type[i]));
-  return vol;
-}
-
 // What a particle gives to the sums of points around it
 struct ComputeFSIProbe::Source {
   int i;
@@ -358,7 +346,10 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
                        state.floor, fluid};
     double x[3];
     for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
-    const double vol = volume_at(x, i, walls);
+    double vol = atom->rmass[i] / atom->rho[i];
+    // behind a mirror wall a solid is not there, but its image; walls of particles have no images
+    if (state.species == SOLID)
+      for (const auto &w : walls.wall) vol *= w.before(x, disc->dx_of(type));
     if (vol == 0.0) return;
     const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, disc->cut) : 0;
     const bool may_hide = sight && fluid && sight->near(atom->x[i]);
@@ -420,8 +411,7 @@ void ComputeFSIProbe::sum_up()
   MPI_Allreduce(sums.data(), all.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, world);
 }
 
-// mean over the points of a place of quantity k; a point without fluid within the kernel's support
-// counts as 0
+// mean over the points of a place of quantity k; 0 where no fluid is within the kernel's support
 double ComputeFSIProbe::field(const Place &place, int k) const
 {
   if (place.kept) return place.u[quantity[k] - UX];

@@ -95,7 +95,6 @@ class ComputeFSIProbe : public Compute {
   void set_grid(Place &, double dx) const;
   void find_near();
   template <class F> void for_images(int i, F) const;
-  double volume_at(const double *x, int i, const FSI::Walls &) const;
   std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;
   struct Source;
   template <class K>

@@ -21,7 +21,6 @@
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
-#include "memory.h"
 #include "pair_fsi_fluid.h"
 #include "update.h"
 
@@ -31,7 +30,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), nmax(0)
+    Compute(lmp, narg, arg)
 {
   Keywords keywords(lmp, "compute fsi/surface/atom");
   keywords.key("number/density")
@@ -43,11 +42,6 @@ ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) 
   keywords.parse(narg - 3, arg + 3);
   peratom_flag = 1;
   size_peratom_cols = 0;
-}
-
-ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
-{
-  memory->destroy(vector_atom);
 }
 
 void ComputeFSISurfaceAtom::init()
@@ -65,12 +59,8 @@ void ComputeFSISurfaceAtom::compute_peratom()
   invoked_peratom = update->ntimestep;
   const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/surface/atom");
   const Discretization &disc = fix_fsi->disc;
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->destroy(vector_atom);
-    memory->create(vector_atom, nmax, "fsi/surface/atom:vector_atom");
-    sum.resize(nmax);
-  }
+  sum.resize(atom->nmax);
+  vector_atom = sum.data();
   comm->forward_comm();    // ghosts still stand where they were in the middle of the step
   double limit;
   if (rule == NUMBER_DENSITY) {
@@ -84,11 +74,11 @@ void ComputeFSISurfaceAtom::compute_peratom()
   }
   const int *const mask = atom->mask, *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++)
-    vector_atom[i] =
-        (mask[i] & groupbit) && disc.state[type[i]].species == FLUID && sum[i] <= limit ? 1.0 : 0.0;
+    sum[i] = (mask[i] & groupbit) && disc.state[type[i]].species == FLUID && sum[i] <= limit ? 1.0
+                                                                                             : 0.0;
 }
 
 double ComputeFSISurfaceAtom::memory_usage()
 {
-  return (double) nmax * sizeof(double) + (double) sum.capacity() * sizeof(double);
+  return (double) sum.capacity() * sizeof(double);
 }

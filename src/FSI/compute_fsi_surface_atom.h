@@ -26,13 +26,11 @@ ComputeStyle(fsi/surface/atom,ComputeFSISurfaceAtom);
 
 namespace LAMMPS_NS {
 
-// 1 for fluid particles at a free surface, else 0. A solid or a wall next to the fluid is not a
-// free surface.
+// 1 for fluid particles at a free surface, which a face of a solid or a wall is not; else 0.
 
 class ComputeFSISurfaceAtom : public Compute {
  public:
   ComputeFSISurfaceAtom(class LAMMPS *, int, char **);
-  ~ComputeFSISurfaceAtom() override;
   void init() override;
   void compute_peratom() override;
   double memory_usage() override;
@@ -41,8 +39,7 @@ class ComputeFSISurfaceAtom : public Compute {
   enum { DIVERGENCE, NUMBER_DENSITY };
   int rule;
   double threshold;
-  int nmax;
-  std::vector<double> sum;
+  std::vector<double> sum;    // then the flags
 };
 
 }    // namespace LAMMPS_NS
