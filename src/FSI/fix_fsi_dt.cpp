@@ -99,8 +99,7 @@ void FixFSIDt::init()
   if (!modify->get_fix_by_style("^dt/reset$").empty()) refuse(error, Refused::RESET_STEP);
   for (auto &fix : modify->get_fix_by_style("^move$"))
     refuse(error, Refused::MOVE_STEP, fix->id, fix->style);
-  // the time step changes when fix fsi begins its step: what moves earlier would still take the old
-  // one
+  // the time step changes when fix fsi begins its step: what moves earlier would take the old one
   for (auto &fix : modify->get_fix_list()) {
     if (fix == fix_fsi) break;
     if (modify->get_fix_mask(fix) & INITIAL_INTEGRATE)
@@ -110,34 +109,34 @@ void FixFSIDt::init()
     // whatever a timestep command between read_restart and here has said
     dt = std::min(dt, high);
     next_dt = std::min(next_dt, high);
-    update->update_time();
-    update->dt = dt;
-    update->dt_default = 0;
-    // who was asked before has taken the other one
-    if (force->pair) force->pair->reset_dt();
-    for (auto &fix : modify->get_fix_list()) {
-      if (fix == this) break;
-      fix->reset_dt();
-    }
+    set_step(dt, this);    // who was asked before has taken the other one
     fix_fsi->clock.restore();
   }
 }
 
+// pair styles, and fixes before that one, hear of it
+void FixFSIDt::set_step(double dt, const Fix *before) const
+{
+  update->update_time();
+  update->dt = dt;
+  update->dt_default = 0;
+  if (force->pair) force->pair->reset_dt();
+  for (auto &fix : modify->get_fix_list()) {
+    if (fix == before) break;
+    fix->reset_dt();
+  }
+}
+
 // The first run, or one for which the script gave another time step, begins with the limits.
-// Other runs go on with what was chosen before: two runs are one, and a restarted run is the
-// uninterrupted one.
+// Others go on with what was chosen before: two runs are one, and so is a restarted one.
 void FixFSIDt::setup(int)
 {
   const bool go_on = restored || (dt > 0.0 && update->dt == dt);
   restored = false;
   if (!go_on) {
     find_outside();
-    find_limits();
     // down at once; up only where no time step was given
-    if (check)
-      report();
-    else
-      choose(update->dt_default ? BIG : update->dt);
+    find_limits(update->dt_default ? BIG : update->dt);
   }
   if (end < BIG) approach_end();
 }
@@ -165,13 +164,7 @@ void FixFSIDt::find_outside() const
 
 void FixFSIDt::end_of_step()
 {
-  if (update->ntimestep % interval == 0) {
-    find_limits();
-    if (check)
-      report();
-    else
-      choose(growth * update->dt);
-  }
+  if (update->ntimestep % interval == 0) find_limits(growth * update->dt);
   if (end < BIG) approach_end();
 }
 
@@ -214,38 +207,34 @@ void FixFSIDt::post_run()
   cut = false;
 }
 
-// A new time step begins with a step, between two of position Verlet, each of which is second
-// order on its own: positions and velocities need no more care. What lives at the middle of
-// steps, the density of continuity and the stress of fsi/solid, goes from t^n - dt_old/2 to t^n
-// + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
-// first order, (dt_new - dt_old)/2 times the rate: StepState::dt_offset.
-// (The rates' positions, dt/2 v before those in atom->x, are of the new step, as they should.)
-// Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the
-// end of the last step.
+// A new time step begins with a step, between two of position Verlet, each of which is second order
+// on its own: positions and velocities need no more care. What lives at the middle of steps, the
+// density of continuity and the stress of fsi/solid, goes from t^n - dt_old/2 to t^n + dt_new/2 by
+// the rate of t^n: by the mean of the two, or every change would add an error of first order,
+// (dt_new - dt_old)/2 times the rate: StepState::dt_offset. (The rates' positions, dt/2 v before
+// those in atom->x, are of the new step, as they should.) Other styles hear of it as from fix
+// dt/reset; the clock and the dumps by time count from the end of the last step.
 void FixFSIDt::start_step()
 {
   if (check) return;
   if (next_substeps) step->substeps = next_substeps;
   if (next_dt > 0.0 && next_dt != update->dt) {
     update->ntimestep--;
-    update->update_time();
-    update->dt = next_dt;
-    update->dt_default = 0;
-    if (force->pair) force->pair->reset_dt();
-    for (auto &fix : modify->get_fix_list()) fix->reset_dt();
+    set_step(next_dt, nullptr);
     output->reset_dt();
     update->ntimestep++;
   }
   dt = update->dt;
 }
 
-// the limits (fsi_limits.cpp) with the factors
-void FixFSIDt::find_limits()
+// the limits (fsi_limits.cpp) with the factors, and what follows: a step of so much at most
+void FixFSIDt::find_limits(double most)
 {
   const bool substeps = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS &&
       (automatic || step->substeps > 1);
   limits->find(*disc, step->viscosity, groupbit, substeps, of_fluid, of_solid);
   limits->reduce();
+  check ? report() : choose(most);
 }
 
 // the next time step, at most that much; with a given number of sub-steps the solid limits the

@@ -77,10 +77,11 @@ class FixFSIDt : public Fix, public FSI::Part {
   bool restored = false;
 
   void find_outside() const;
-  void find_limits();
+  void find_limits(double most);
   void choose(double most);
   void approach_end();
   void report();
+  void set_step(double, const Fix *before) const;
   std::string name(int) const;
 };
 

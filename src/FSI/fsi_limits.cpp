@@ -24,15 +24,17 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+namespace {
 // fastest wave seen from the lattice, and largest squared acceleration, with whose they are
-struct Limits::OfType {
+struct OfType {
   bool present = false;
   double fastest = 0.0, asq = 0.0, viscosity = 0.0;
   tagint fast = 0, pushed = 0;
 };
+}    // namespace
 
-std::vector<Limits::OfType> Limits::look(const Discretization &disc, const double *viscosity,
-                                         int groupbit) const
+static std::vector<OfType> look(const Atom *atom, const Discretization &disc,
+                                const double *viscosity, int groupbit, double ftm2v)
 {
   const int *const mask = atom->mask, *const type = atom->type, moved = disc.mover->groupbit;
   double **const v = atom->v, **const f = atom->f;
@@ -54,7 +56,7 @@ std::vector<Limits::OfType> Limits::look(const Discretization &disc, const doubl
       }
     }
     if (!(mask[i] & moved)) continue;    // what is held does not follow its force
-    const double w = force->ftm2v / atom->rmass[i];
+    const double w = ftm2v / atom->rmass[i];
     const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
     if (asq > t.asq) {
       t.asq = asq;
@@ -69,7 +71,7 @@ std::vector<Limits::OfType> Limits::look(const Discretization &disc, const doubl
 void Limits::find(const Discretization &disc, const double *viscosity, int groupbit, bool substeps,
                   double of_fluid, double of_solid)
 {
-  const auto types = look(disc, viscosity, groupbit);
+  const auto types = look(atom, disc, viscosity, groupbit, force->ftm2v);
   const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
   // elastic solids without sub-steps feel viscous forces of the start of the step
   const bool implicit =

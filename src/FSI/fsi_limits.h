@@ -11,15 +11,12 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Limits of the time step, by cause: fix fsi/dt chooses by them, advice before a run compares the
-// time step with them.
+// Limits of the time step, by cause: fix fsi/dt chooses by them, advice before a run compares.
 
 #ifndef LMP_FSI_LIMITS_H
 #define LMP_FSI_LIMITS_H
 
 #include "pointers.h"
-
-#include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -47,10 +44,6 @@ namespace FSI {
     void find(const Discretization &, const double *viscosity, int groupbit, bool substeps,
               double of_fluid = FLUID_FACTOR, double of_solid = SOLID_FACTOR);
     void reduce();    // of all ranks
-
-   private:
-    struct OfType;
-    std::vector<OfType> look(const Discretization &, const double *viscosity, int groupbit) const;
   };
 
 }    // namespace FSI
