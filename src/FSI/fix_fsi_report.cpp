@@ -288,8 +288,7 @@ std::string FixFSIReport::what_to_change(double loop, const double *mean, double
                a_list = steps / std::max<bigint>(neighbor->ncalls, 1),
                work = loop - mean[Profile::MESSAGES];
   const bool waits = busiest > 1.1 * work;
-  const int substeps = step->substeps;
-  const double of_fluid = mean[Profile::FLUID_FORCES], of_solids = mean[Profile::SOLID_FORCES];
+  const double of_fluid = mean[Profile::FLUID_FORCES];
   struct Hint {
     const char *name;
     double seconds;
@@ -311,10 +310,12 @@ std::string FixFSIReport::what_to_change(double loop, const double *mean, double
   add(true, "output", mean[OUTPUT], 0.1,
       fmt::format("thermo every {} steps, {} dumps: less often", lmp->output->thermo_every,
                   lmp->output->ndump));
-  add(substeps > 1, "force of solids", of_solids, 0.4,
-      fmt::format("{} sub-steps in each step: fewer particles through the body, a softer body",
-                  substeps));
-  add(substeps == 1, "force of solids", of_solids, 0.4, "fewer particles through the body");
+  add(true, "force of solids", mean[Profile::SOLID_FORCES], 0.4,
+      step->substeps == 1
+          ? "fewer particles through the body"
+          : fmt::format(
+                "{} sub-steps in each step: fewer particles through the body, a softer body",
+                step->substeps));
   add(facts_of_fluids(lmp).shift_every == 1, "density", mean[Profile::DENSITY], 0.3,
       "shifting in every step: shift/every 4");
   add(disc->kernel == QUINTIC, "force of fluid", of_fluid, 0.3,

@@ -26,8 +26,7 @@
 #include <algorithm>
 #include <cmath>
 
-// set by this package's CMake files where it found FFTW; inside a LAMMPS tree, LAMMPS' own with
-// KSPACE
+// FSI_FFTW3: of this package's CMake files, which found FFTW; in a LAMMPS tree that of KSPACE
 #if defined(FSI_FFTW3) || (defined(FFT_FFTW3) && !defined(FFT_SINGLE))
 #define FSI_HAS_FFTW
 #include <fftw3.h>

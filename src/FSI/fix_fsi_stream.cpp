@@ -131,7 +131,7 @@ void FixFSIStream::find_zone()
     if (s < from || s > to) continue;
     if (fluid)
       zone.push_back({i, 0.0});
-    else if (in_zone(i) >= 0.0)
+    else if (in_zone(i) >= 0.0)    // it would be torn by what drives the fluid around it
       error->one(FLERR,
                  "Atom {} of a solid is in region {} of fix fsi/stream, which is for fluid alone",
                  atom->tag[i], region_id);
@@ -148,8 +148,7 @@ double FixFSIStream::in_zone(int i) const
       : -1.0;
 }
 
-// sin^2 along the axis: smooth, 0 at the ends. Solids would be torn by what drives the fluid around
-// them
+// sin^2 along the axis: smooth, 0 at the ends
 void FixFSIStream::find_weights()
 {
   if (last_step == update->ntimestep) return;

@@ -31,11 +31,9 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or
-                                                // less is there at any time
+static constexpr double STARVED = 1.0 / 3.0;    // of what it began with, to a column more or less
 static constexpr double OCCUPIED = 0.5;         // of the spacing: as near a particle takes a place
-static constexpr double SPARSE = 0.75;       // of the particles at the plane: a slice with fewer is
-                                             // not full
+static constexpr double SPARSE = 0.75;       // of the particles at the plane: fewer fill no slice
 static constexpr double FEW_FINER = 0.25;    // of a buffer, that are alone
 
 void Buffer::set_fields(Fields &fields)
@@ -441,8 +439,7 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
     });
 }
 
-// behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost,
-// and no more
+// behind the plane, and no fluid that this end lets pass: LAMMPS would say that it is lost, no more
 void Buffer::check_stranger(int i)
 {
   const double *const x = atom->x[i];

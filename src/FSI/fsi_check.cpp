@@ -38,8 +38,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr int EVERY = 10;    // steps from one close look to the next; and at each list build
-// A body may move as a whole, faster than the waves in it; one that blows up passes this in a step
-// or two
+// A body may move as a whole, faster than its waves; one that blows up passes this in a step or two
 static constexpr double SOLID_OVER_FLUID = 10.0;
 static constexpr int BLOCK = 256;
 static constexpr double COMPRESSED =
@@ -79,8 +78,9 @@ void Check::before_init()
                "fix viscous or artificial/visc to a state of rest");
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
+  const Facts solids = facts_of_solids(lmp);
   const bool fluid = facts_of_fluids(lmp).style;
-  if (fluid || facts_of_solids(lmp).by_rate)
+  if (fluid || solids.by_rate)
     for (const auto *fix : modify->get_fix_list())
       if (fix->box_change & ~(Fix::BOX_CHANGE_ANY | Fix::BOX_CHANGE_DOMAIN))
         refuse(error, Refused::DEFORM, fix->id, fix->style);
@@ -102,9 +102,8 @@ void Check::before_init()
                domain->dimension);
   if (domain->triclinic) refuse(error, Refused::TRICLINIC);
 
-  const auto solid = facts_of_solids(lmp).style;
-  const bool solid_tl = solid == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
-  if (!solid && !fluid)
+  const bool solid_tl = solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+  if (!solids.style && !fluid)
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
   if (step.substeps > 1 && !solid_tl) refuse(error, Refused::SUBSTEPS);
   if (solid_tl && disc.density_solid != Discretization::CONTINUITY)
@@ -268,21 +267,19 @@ void Check::thin_bodies() const
 void Check::init()
 {
   limit_sq.assign(atom->ntypes + 1, HUGE_SQUARE);
+  dense.assign(atom->ntypes + 1, OFF);
   for (int t = 1; t <= atom->ntypes; t++) {
     const State &s = disc.state[t];
+    if (s.species == FLUID) dense[t] = COMPRESSED * s.rho0;
     if (disc.mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
     const double most = disc.mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
     limit_sq[t] = most * most * s.wave_speed_sq();
   }
-  // |v + dv| is below a limit if no component of v is above 0.9, and none of dv above 0.1, of it
-  // over the root of 3
+  // |v + dv| is below a limit if components of v are below 0.9, of dv below 0.1, of it over root 3
   const double component = std::sqrt(*std::min_element(limit_sq.begin() + 1, limit_sq.end()) / 3.0);
   calm_speed = 0.9 * component;
   calm_kick = 0.1 * component;
 
-  dense.assign(atom->ntypes + 1, OFF);
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (disc.state[t].species == FLUID) dense[t] = COMPRESSED * disc.state[t].rho0;
   warned_dense = warned_soft = false;
   densest = {};
   deviations.assign(2 * dense.size(), 0.0);
@@ -318,8 +315,7 @@ void Check::before_kick()
   if (step.substeps == 1) judge(Stop::MIDDLE);
 }
 
-// sub-steps may take solids anywhere: keep a state to go back to, and look at them before the
-// fluid is kicked
+// sub-steps may take solids anywhere: keep a state to go back to before the fluid is kicked
 void Check::before_substeps(const std::vector<int> &solids)
 {
   substepped = &solids;

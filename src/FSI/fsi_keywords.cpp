@@ -96,9 +96,7 @@ std::string FSI::list_of(const std::vector<std::string> &words)
   return text;
 }
 
-/* ----------------------------------------------------------------------
-   building the rows
-------------------------------------------------------------------------- */
+// ---- building the rows ----
 
 // pair_style name->Pair style name, fix name->Fix name
 static std::string sentence(const std::string &command)
@@ -186,9 +184,7 @@ Keywords &Keywords::or_word(const std::string &word, double number)
   return *this;
 }
 
-/* ----------------------------------------------------------------------
-   one value
-------------------------------------------------------------------------- */
+// ---- one value ----
 
 void Keywords::Value::begin() const
 {
@@ -297,9 +293,7 @@ std::string Keywords::Row::text() const
   return text;
 }
 
-/* ----------------------------------------------------------------------
-   the command
-------------------------------------------------------------------------- */
+// ---- the command ----
 
 void Keywords::begin() const
 {
@@ -352,9 +346,7 @@ void Keywords::parse(const std::vector<std::string> &arg)
   }
 }
 
-/* ----------------------------------------------------------------------
-   restart
-------------------------------------------------------------------------- */
+// ---- restart ----
 
 void Keywords::write(Record &record) const
 {
@@ -411,9 +403,7 @@ std::vector<Keywords::Effect> Keywords::effects() const
   return list;
 }
 
-/* ----------------------------------------------------------------------
-   numbers and variables
-------------------------------------------------------------------------- */
+// ---- numbers and variables ----
 
 Values::~Values()
 {
@@ -423,9 +413,7 @@ Values::~Values()
 void Values::read(int k, const std::string &word, const std::string &what, const std::string &other)
 {
   if (utils::strmatch(word, "^v_")) return set_variable(k, word.substr(2));
-  std::string title = command;
-  title[0] = toupper(title[0]);
-  list[k].number = numeric(lmp, title + " " + what, word, {}, false, other);
+  list[k].number = numeric(lmp, sentence(command) + " " + what, word, {}, false, other);
   list[k].source = NUMBER;
 }
 

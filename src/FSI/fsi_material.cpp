@@ -25,6 +25,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <set>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -164,7 +165,8 @@ class MaterialReader : protected Pointers {
         error->one(FLERR, "Material {} {} is of unknown species {}: expected fluid, solid or wall",
                    name, where, species);
 
-      std::string known, given = " ";
+      std::string known;
+      std::set<std::string> given;
       for (const auto &p : properties)
         if (has(m.species, p)) known += (known.empty() ? "" : ", ") + std::string(p.name);
       if (m.species == SOLID) known += std::string(", ") + PRONY;
@@ -189,12 +191,11 @@ class MaterialReader : protected Pointers {
           error->one(FLERR, "Unknown keyword {} of {} {} {}: expected {}", key, species, name,
                      where, known);
         m.*p->value = numeric(lmp, what, values.next_string(), p->range, true);
-        given += key + " ";
+        given.insert(key);
         after = next(values);
       }
       for (const auto &p : properties)
-        if (p.needed && has(m.species, p) &&
-            given.find(std::string(" ") + p.name + " ") == std::string::npos)
+        if (p.needed && has(m.species, p) && !given.count(p.name))
           error->one(FLERR, "Material {} {} needs {} {}", name, where, p.name, p.range.text());
       if (m.law.varies() || std::isfinite(m.law.most))
         end_law(fmt::format("Material {} {}", name, where), m);

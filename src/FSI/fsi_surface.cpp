@@ -31,8 +31,6 @@
 
 using namespace LAMMPS_NS;
 using namespace FSI;
-using MathExtra::cross3;
-using MathExtra::dot3;
 
 namespace {
 typedef std::array<double, 3> Vector;
@@ -51,12 +49,12 @@ Vector operator*(double k, const Vector &a)
 }
 double operator*(const Vector &a, const Vector &b)
 {
-  return dot3(a.data(), b.data());
+  return MathExtra::dot3(a.data(), b.data());
 }
 Vector cross(const Vector &a, const Vector &b)
 {
   Vector c;
-  cross3(a.data(), b.data(), c.data());
+  MathExtra::cross3(a.data(), b.data(), c.data());
   return c;
 }
 
@@ -135,8 +133,7 @@ class OfRegion : public Surface {
 // ---- triangles, or segments of a plane ----
 
 // Its simplices by the cells that they are near; the sign by normals of faces, edges and corners
-// (Baerentzen and Aanaes 2005, IEEE Trans. Vis. Comput. Graph. 11, 243), far away by the winding
-// number.
+// (Baerentzen and Aanaes 2005, IEEE Trans. Vis. Comput. Graph. 11, 243), or by the winding number.
 class OfSimplices : public Surface {
   Error *const error;
   const std::string label;
@@ -348,18 +345,6 @@ class OfSimplices : public Surface {
     return sum > MathConst::MY_PI;    // 2 pi in 2D; half of 4 pi in 3D
   }
 };
-
-std::vector<Vector> numbers_after(const std::string &text, const std::string &word)
-{
-  std::vector<Vector> found;
-  std::istringstream in(text);
-  for (std::string next; in >> next;)
-    if (next == word) {
-      Vector v;
-      if (in >> v[0] >> v[1] >> v[2]) found.push_back(v);
-    }
-  return found;
-}
 }    // namespace
 
 std::unique_ptr<Surface> FSI::surface_of_region(LAMMPS *lmp, const std::string &id)
@@ -406,7 +391,12 @@ std::unique_ptr<Surface> FSI::surface_of_stl(LAMMPS *lmp, const std::string &fil
           {Vector{of[3], of[4], of[5]}, {of[6], of[7], of[8]}, {of[9], of[10], of[11]}});
     }
   } else {
-    const auto corners = numbers_after(text, "vertex");
+    std::vector<Vector> corners;
+    std::istringstream in(text);
+    for (std::string word; in >> word;) {
+      Vector v;
+      if (word == "vertex" && in >> v[0] >> v[1] >> v[2]) corners.push_back(v);
+    }
     if (corners.empty() || corners.size() % 3)
       lmp->error->all(FLERR, "Fsi/pack file {} is no STL file", file);
     for (size_t k = 0; k < corners.size(); k += 3)
