@@ -27,8 +27,7 @@ namespace FSI {
   struct Discretization;
 }
 
-// Force and torque of the fluid on the solid and wall particles of a group: what pair_style
-// fsi/fluid gives them.
+// Force and torque that pair_style fsi/fluid gives to the solid and wall particles of a group.
 
 class ComputeFSIForce : public Compute {
  public:
@@ -37,11 +36,9 @@ class ComputeFSIForce : public Compute {
   void init() override;
   void compute_vector() override;
 
-  // adds the forces in atom->f with this sign: pair_style fsi/fluid calls it with -1 before its
-  // loop and with +1 after it
+  // adds the forces in atom->f with this sign: -1 before the loop of pair_style fsi/fluid, +1 after
   void tally(double sign);
-  // between the two: forces of viscosity alone, per particle, rows of so many numbers; only if
-  // split
+  // between the two, only if split: forces of viscosity alone, per particle, in rows
   void tally_viscosity(const double *, int row);
   void add_more(int i, const double *f)    // after them, to local atom i
   {

@@ -12,8 +12,7 @@
 ------------------------------------------------------------------------- */
 
 // What no run may lose: numbers that are finite, densities above 0, fluids slower than their sound.
-// Fix fsi asks in every step, before velocities are kicked: the last moment at which there is a
-// state to go back to.
+// Fix fsi asks in every step before the kick, the last moment with a state to go back to.
 
 #ifndef LMP_FSI_CHECK_H
 #define LMP_FSI_CHECK_H

@@ -28,8 +28,7 @@ namespace FSI {
 
   class Record;
 
-  // What a number may be. All are 0 or of a size between SMALLEST and LARGEST, so that products of
-  // some of them are numbers.
+  // What a number may be. Sizes but 0 are from SMALLEST to LARGEST, so that products are numbers.
   struct Range {
     static constexpr double SMALLEST = 1.0e-20, LARGEST = 1.0e20;
     double low = -LARGEST, high = LARGEST;
@@ -111,8 +110,7 @@ namespace FSI {
     Keywords(const Keywords &) = delete;               // rows hold addresses of their owner
 
     // a row: an argument that stands before all keywords, or a keyword. Its values follow in the
-    // order in which they are described; what: their names in messages, where there is more than
-    // one
+    // order in which they are described; what: their names in messages, of more than one
     Keywords &argument(const std::string &name) { return add(Row{name, false}); }
     Keywords &key(const std::string &name) { return add(Row{name, true}); }
     Keywords &number(double &where, double start, const Range & = {}, const std::string &what = "");
@@ -132,8 +130,7 @@ namespace FSI {
     // of the last row: the effect in words, {} stands for its first value; on if a number is not 0,
     // or another value not the one at the start
     Keywords &effect(const std::string &text) { return with(&Row::effect, text); }
-    // of the last row: a run that goes on from a restart file must not change it, or may, and what
-    // that does
+    // of the last row: a run from a restart file must not change it, or may, and what that does
     Keywords &kept(const std::string &why)
     {
       return changes(why).with(&Row::must_not_change, true);

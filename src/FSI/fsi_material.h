@@ -51,8 +51,7 @@ namespace FSI {
     // solid, 3D and plane strain: shear and bulk modulus
     double shear_modulus() const { return 0.5 * young / (1.0 + poisson); }
     double bulk_modulus() const { return young / (3.0 * (1.0 - 2.0 * poisson)); }
-    // solid, plane stress: E/(2(1-nu)), the in-plane bulk modulus that goes with a trace over two
-    // axes
+    // solid, plane stress: E/(2(1-nu)), the in-plane bulk modulus of a trace over two axes
     double plane_stress_modulus() const { return young / (2.0 * (1.0 - poisson)); }
   };
 
@@ -89,8 +88,7 @@ namespace FSI {
         p = p0 + csq * (rho - rho0);
       return p > floor ? p : floor;
     }
-    // energy per mass that pressure() stores from rho0 on: the integral of p/rho^2 (linear or Tait,
-    // floor included)
+    // energy per mass that pressure() stores from rho0 on: the integral of p/rho^2, floor included
     double energy(double rho) const;
     double density(double p) const;    // the inverse of pressure(), for initial states
   };
@@ -105,8 +103,7 @@ namespace FSI {
                                        const std::map<std::string, std::string> &given);
   std::vector<Material> read_all_materials(LAMMPS *lmp, const std::string &file);
 
-  // a line of such a file; what it says. "NULL" is a material, too: of species NONE. where: "in
-  // file F", for messages
+  // a line of such a file; what it says. "NULL" is a material of species NONE. where: "in file F"
   std::string describe(const Material &);
   Material read_material(LAMMPS *lmp, const std::string &where, const std::string &line);
 

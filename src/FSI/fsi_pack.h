@@ -31,14 +31,12 @@
 #include <cstring>
 #include <type_traits>
 
-// A source of package KOKKOS, which includes its headers first, has functions for a device; there
-// loops go pair by pair.
+// A source of package KOKKOS, which includes its headers first: pair by pair, for a device.
 #if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
 #define FSI_PACKS 0
 #define FSI_INLINE KOKKOS_FORCEINLINE_FUNCTION
 #define FSI_INLINE_LAMBDA
-// compilers with the front end of EDG (nvc++, icpc) call themselves GNU C without having its
-// vectors
+// compilers with EDG's front end (nvc++, icpc) call themselves GNU C without having its vectors
 #elif defined(__GNUC__) && (defined(__x86_64__) || defined(__aarch64__)) && !defined(__EDG__) && \
     !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
 #define FSI_PACKS 1
@@ -187,8 +185,7 @@ namespace FSI {
       const Half y = load_half(p) + x;
       __builtin_memcpy(p, &y, sizeof(y));
     }
-    // the two doubles at p and at q; those of a from number I on: as halves of registers where the
-    // compiler has words for it
+    // the two doubles at p and at q; those of a from number I on: as halves of registers if it can
 #if defined(__clang__) || __GNUC__ >= 12
     FSI_INLINE static Pack both(const double *p, const double *q)
     {

@@ -30,10 +30,10 @@ namespace FSI {
     enum Section { DENSITY, STRESS, FLUID_FORCES, SOLID_FORCES, WALLS, MESSAGES, NPART };
     static constexpr int OUTSIDE = NPART;
     double seconds[NPART + 1];    // each without what is nested in it
-    double impulse_held[3];    // of sub-steps on held solids, beyond the force at their end times
-                               // the step
-    double reflected[3];       // momentum that reflections at walls gave to the fluid
-    int current;               // section that is running
+    // of sub-steps on held solids, beyond the force at their end times the step
+    double impulse_held[3];
+    double reflected[3];    // momentum that reflections at walls gave to the fluid
+    int current;            // section that is running
 
     Profile() { clear(); }
     void clear()
@@ -81,8 +81,7 @@ namespace FSI {
     int before;
   };
 
-  // that of messages of a fix or pair style of the package; nothing is kept of what happens outside
-  // a step, in output
+  // that of messages of a style of the package; nothing is kept outside of a step, in output
   inline Phase messages(Profile *profile, const Comm *comm)
   {
     const bool known = profile && profile->current != Profile::OUTSIDE && comm->nprocs > 1;

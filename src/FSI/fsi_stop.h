@@ -11,8 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// How a run that goes wrong is stopped: particle, place, value, what to try; files of the state
-// before it went wrong.
+// How a run that goes wrong is stopped: particle, place, value, what to try; files of the state.
 
 #ifndef LMP_FSI_STOP_H
 #define LMP_FSI_STOP_H
