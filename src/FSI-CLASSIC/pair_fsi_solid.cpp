@@ -437,7 +437,7 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
   }
 }
 
-void PairFSISolid::go_back()
+void PairFSISolid::undo_advance()
 {
   if (disc->density_solid != Discretization::CONTINUITY) return;
   const double dt = update->dt + step->dt_offset;

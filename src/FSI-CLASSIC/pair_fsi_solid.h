@@ -57,7 +57,7 @@ class PairFSISolid : public PairFSI {
   bool add_rates(bool) override;
   void advance(bool) override;
   void add_number_density(double *, bool of_all_bodies) override;
-  void go_back() override;
+  void undo_advance() override;
   void find_idle(const Census &, const Idle &) const override;
 
   // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim

@@ -28,6 +28,8 @@
 #include "fsi_refusals.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "output.h"
+#include "thermo.h"
 #include "update.h"
 
 #include <algorithm>
@@ -41,6 +43,7 @@ static constexpr int EVERY = 10;    // steps from one close look to the next; an
 // A body may move as a whole, faster than its waves; one that blows up passes this in a step or two
 static constexpr double SOLID_OVER_FLUID = 10.0;
 static constexpr int BLOCK = 256;
+static constexpr int FIXED = 1;    // face of the box: LAMMPS loses what leaves it
 static constexpr double COMPRESSED =
     1.2;    // density over that at rest: Mach numbers of the limit make it in head-on impacts
 // Of densities, relative to those at rest: their standard deviation where the pressure changes
@@ -66,7 +69,7 @@ static bool all_below(int n, const double *a, double most)
 Check::Check(LAMMPS *lmp, const Discretization &disc, const StepState &step,
              const std::vector<Part *> &parts) :
     Pointers(lmp),
-    disc(disc), step(step), stop(lmp, "Fix fsi", disc, step, parts)
+    disc(disc), step(step), parts(parts), stop(lmp, "Fix fsi", disc, step, parts)
 {
 }
 
@@ -295,14 +298,32 @@ void Check::setup()
   judge(Stop::START);
 }
 
-// LAMMPS would say that a position is not finite, but not whose
+// LAMMPS would say that a position is not finite, or that an atom is lost, but not which
 void Check::positions()
 {
-  const int n = atom->nlocal;
+  const bool keeps = output->thermo->lostflag == Thermo::ERROR;
+  double lo[3], hi[3];
+  for (int d = 0; d < 3; d++) {
+    lo[d] = keeps && domain->boundary[d][0] == FIXED ? domain->boxlo[d] : -OFF;
+    hi[d] = keeps && domain->boundary[d][1] == FIXED ? domain->boxhi[d] : OFF;
+  }
+  const auto *const x = vectors(atom->x);
   found = {};
-  if (n && !all_below(3 * n, atom->x[0], OFF))
-    for (int i = 0; i < n; i++) enter(stop.not_finite(i, false));
-  judge(Stop::BEFORE);
+  const auto outside = step.those(atom->nlocal, [&](int i) {
+    bool in = true;
+    for (int d = 0; d < 3; d++) in = in && x[i][d] >= lo[d] && x[i][d] < hi[d];
+    return !in;    // nor what is not a number
+  });
+  for (const int i : outside) {
+    const Finding wrong = stop.not_finite(i, false);
+    if (wrong.tag)
+      enter(wrong);
+    else if (std::none_of(parts.begin(), parts.end(), [i](const Part *p) {
+               return p->takes_away(i);
+             }))
+      enter(stop.finding(LOST, i, 1.0));
+  }
+  judge(Stop::DRIFTED);
 }
 
 // Positions of local and ghost atoms are those of the middle of the step, velocities those of its
@@ -496,6 +517,17 @@ void Check::enter(const Finding &other)
   if (weight_of(other) > weight_of(found)) found = other;
 }
 
+// by which a place is outside of the box
+std::string Check::face_of(const double *x) const
+{
+  for (int d = 0; d < 3; d++) {
+    const double lo = domain->boxlo[d], hi = domain->boxhi[d];
+    if (domain->periodicity[d] || (x[d] >= lo && x[d] < hi)) continue;
+    return fmt::format("{}{} at {:g}", "xyz"[d], x[d] < lo ? "lo" : "hi", x[d] < lo ? lo : hi);
+  }
+  return "";
+}
+
 // all ranks stop together
 void Check::judge(Stop::When when)
 {
@@ -524,5 +556,7 @@ void Check::judge(Stop::When when)
     what =
         fmt::format("Mach number {:.4g} is above the limit {:g}", worst.value,
                     disc.mach * (disc.state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
+  if (worst.trouble == LOST)
+    what = "particle leaves the box through its fixed face " + face_of(worst.x);
   stop.stop(stop.describe(what, worst, when), worst, when);
 }

@@ -35,7 +35,7 @@ namespace FSI {
     void read(const Record &);
     void init();           // of a run: what a restart file or a script has put there
     void setup();          // after the first forces
-    void positions();      // before lists are built
+    void positions();      // before lists are built: finite, and in the box
     void before_kick();    // in each step
     void before_substeps(const std::vector<int> &solids);
     void after_substeps();
@@ -43,6 +43,7 @@ namespace FSI {
    private:
     const Discretization &disc;
     const StepState &step;
+    const std::vector<Part *> &parts;
     Stop stop;
     std::vector<double> densities;    // per type, in the last run; 0: not known
     std::vector<double> limit_sq;     // per type: of the speed
@@ -73,6 +74,7 @@ namespace FSI {
     bool any_soft() const;
     void warn_of_density();
     void warn_of_sound();
+    std::string face_of(const double *x) const;
     void judge(Stop::When);
   };
 

@@ -95,7 +95,7 @@ namespace FSI {
   FSI_INLINE double next_density(double rho, double mass, double w0, double dt, double &rate)
   {
     const double next = rho + dt * rate, alone = mass * w0;
-    if (next < alone) rate = (alone - rho) / dt;    // what go_back() takes
+    if (next < alone) rate = (alone - rho) / dt;    // what undo_advance() takes
     return next < alone ? alone : next;
   }
 

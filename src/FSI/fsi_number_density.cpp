@@ -200,7 +200,7 @@ void SurfaceDeficit::advance(bool advance)
   if (advance) follow();
 }
 
-void SurfaceDeficit::go_back()
+void SurfaceDeficit::undo_advance()
 {
   since = since_before;
   for (size_t i = 0; i < changes.size() / 2; i++) {

@@ -81,7 +81,7 @@ namespace FSI {
     Rank rank() const override { return SURFACES; }
     bool add_rates(bool) override;
     void advance(bool) override;    // after the density
-    void go_back() override;
+    void undo_advance() override;
     std::vector<Effect> effects() const override;
 
    private:

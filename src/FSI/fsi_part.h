@@ -112,8 +112,12 @@ namespace FSI {
     virtual void integrate_substeps() {}    // what takes shorter steps than the kick of all
     virtual void react() {}    // to what bodies have done in this step, before the kick of all
 
-    // from the middle of a step to its start: a run that stops leaves a state to go on from
+    // from the middle of a step to its start, a state to go on from that a run which stops leaves:
+    // what advance() did, if it was called; what moves
+    virtual void undo_advance() {}
     virtual void go_back() {}
+    // does it take this particle away when it leaves the box?
+    virtual bool takes_away(int i) const { return false; }
 
     // Before the first step: what is simulated
     using Effect = Keywords::Effect;

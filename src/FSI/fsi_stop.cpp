@@ -263,7 +263,7 @@ std::string Stop::advice(const Finding &all, When when, const Neighbor &body) co
 
 void Stop::stop(std::string text, const Finding &all, When when)
 {
-  if (when == MIDDLE) go_back();
+  if (when == DRIFTED || when == MIDDLE) go_back(when == MIDDLE);
   if (when != BEFORE && all.tag) {
     write_neighbors(all);
     text += fmt::format(". Particles around it: {}", dump_file);
@@ -275,13 +275,16 @@ void Stop::stop(std::string text, const Finding &all, When when)
 // In the middle of a step positions, walls and densities go back to its start: a state from
 // which the step can be repeated. (The stress of fsi/solid stays where it is, a step too far: an
 // error of one step's strain.)
-void Stop::go_back()
+void Stop::go_back(bool advanced)
 {
   const double back = -0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & disc.mover->groupbit)
       for (int d = 0; d < disc.dim; d++) atom->x[i][d] += back * atom->v[i][d];
-  for (auto *p : parts) p->go_back();
+  for (auto *p : parts) {
+    if (advanced) p->undo_advance();
+    p->go_back();
+  }
   if (step.device) step.device->from_host();
   update->ntimestep--;
 }

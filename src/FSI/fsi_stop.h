@@ -41,7 +41,8 @@ namespace FSI {
   class Stop : protected Pointers {
    public:
     enum Field { FORCE, VELOCITY, MASS_DENSITY, POSITION, MASS };
-    enum When { BEFORE, START, MIDDLE };    // of all forces; of a step: where positions are
+    // before all forces; in a step: where positions are, and for MIDDLE densities, too
+    enum When { BEFORE, START, DRIFTED, MIDDLE };
 
     Stop(class LAMMPS *, const std::string &name, const Discretization &, const StepState &,
          const std::vector<Part *> &);
@@ -72,7 +73,7 @@ namespace FSI {
     std::vector<Part::Effect> effects(bool of_fluid) const;
     std::string advice(const Finding &, When, const Neighbor &) const;
     std::string shorter_step(const Finding &, bool &suspect) const;
-    void go_back();
+    void go_back(bool advanced);
     std::string write_state();
     void write_neighbors(const Finding &) const;
   };

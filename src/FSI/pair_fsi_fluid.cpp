@@ -543,7 +543,7 @@ template <int D> void PairFSIFluid::correct_powers()
   }
 }
 
-void PairFSIFluid::go_back()
+void PairFSIFluid::undo_advance()
 {
   if (!rate) return;
   const double dt = update->dt + step->dt_offset;

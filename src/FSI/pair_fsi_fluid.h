@@ -71,7 +71,7 @@ class PairFSIFluid : public PairFSI {
   void add_number_density(double *, bool of_all_bodies) override;
   void integrate_substeps() override;
   void react() override;
-  void go_back() override;
+  void undo_advance() override;
   // velocity gradients of local fluid particles as they are now
   const FSI::Shear &find_shear();
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)

@@ -322,10 +322,10 @@ void PairFSIFluidKokkos::react()
   PairFSIFluid::react();
 }
 
-void PairFSIFluidKokkos::go_back()
+void PairFSIFluidKokkos::undo_advance()
 {
   to_host(kk->rate, atom->nlocal, rate);
-  PairFSIFluid::go_back();
+  PairFSIFluid::undo_advance();
 }
 
 double PairFSIFluidKokkos::memory_usage()

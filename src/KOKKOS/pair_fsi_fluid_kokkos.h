@@ -44,7 +44,7 @@ class PairFSIFluidKokkos : public PairFSIFluid {
   bool add_rates(bool) override;
   void advance(bool) override;
   void react() override;
-  void go_back() override;
+  void undo_advance() override;
   double memory_usage() override;
 
  private:
