@@ -227,14 +227,22 @@ double ComputeFSIProbe::Place::along(int d, const double *x) const
       MathExtra::lensq3(e);
 }
 
-// of a particle and its periodic images: calls f(shift, x)
-template <class F> void ComputeFSIProbe::for_images(int i, F f) const
+// Of a particle and its periodic images, those within a reach of a place along each axis: calls
+// f(shift, x). In a box narrower than the support a point sees a particle more than once.
+template <class F>
+void ComputeFSIProbe::for_images(int i, const Place &place, double reach, F f) const
 {
-  int most[3], n[3];
-  for (int d = 0; d < 3; d++) most[d] = d < disc->dim && domain->periodicity[d];
-  for (n[0] = -most[0]; n[0] <= most[0]; n[0]++)
-    for (n[1] = -most[1]; n[1] <= most[1]; n[1]++)
-      for (n[2] = -most[2]; n[2] <= most[2]; n[2]++) {
+  int first[3] = {}, last[3] = {}, n[3];
+  for (int d = 0; d < disc->dim; d++) {
+    if (!domain->periodicity[d]) continue;
+    const auto [low, high] = std::minmax(place.from[d], place.to[d]);
+    const double L = domain->prd[d], x = atom->x[i][d];
+    first[d] = static_cast<int>(std::clamp(std::ceil((low - reach - x) / L), -MOST, MOST));
+    last[d] = static_cast<int>(std::clamp(std::floor((high + reach - x) / L), -MOST, MOST));
+  }
+  for (n[0] = first[0]; n[0] <= last[0]; n[0]++)
+    for (n[1] = first[1]; n[1] <= last[1]; n[1]++)
+      for (n[2] = first[2]; n[2] <= last[2]; n[2]++) {
         Particle p = {i};
         double x[3];
         for (int d = 0; d < 3; d++) {
@@ -269,7 +277,7 @@ void ComputeFSIProbe::find_near()
     for (int i = 0; i < atom->nlocal; i++) {
       const int species = disc->state[atom->type[i]].species;
       if (species == FLUID ? !(atom->mask[i] & groupbit) : !place.line) continue;
-      for_images(i, [&](const Particle &p, const double *x) {
+      for_images(i, place, reach, [&](const Particle &p, const double *x) {
         if (place.distance_sq(x, disc->dim) < reach * reach)
           place.near[disc->level_of[atom->type[i]]].push_back(p);
       });

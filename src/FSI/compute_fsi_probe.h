@@ -94,7 +94,7 @@ class ComputeFSIProbe : public Compute {
   int read_place(const std::string &kind, int narg, char **arg);
   void set_grid(Place &, double dx) const;
   void find_near();
-  template <class F> void for_images(int i, F) const;
+  template <class F> void for_images(int i, const Place &, double reach, F) const;
   std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;
   struct Source;
   template <class K>

@@ -117,6 +117,22 @@ def test_periodic_and_group():
     assert np.all(np.abs(got[:, 2] - 1) < 0.25)
 
 
+@pytest.mark.parametrize("layers", (1, 2, 3))
+def test_period_narrower_than_the_support(layers):
+    """A slab of a few layers is a box of seven: points see each particle and all of its images, also where they are outside of the box."""
+    def read(n):
+        x = np.concatenate([lattice((12, 9, 1), DX) + (0, 0, k * DX) for k in range(n)])
+        box = (0, -1, 0), (1.2, 2, n * DX)
+        with Scene(x, np.tile((0.3, -0.1, 0.2), (len(x), 1)), dim=3, dx=DX, skin=0.1, boundary="p f p", box=box) as s:
+            s.put("rho", 1000 + 10 * x[:, 0] - 5 * x[:, 1])
+            s.run_lines("compute line all fsi/probe level line 0.6 0 0.02 0.6 1.5 0.02")
+            points = measure(s, "p rho vx vy vz fill point 0.55 0.41 0.05 point 0.01 0.9 0.45 point -0.8 0.3 0.05", LMP_TYPE_ARRAY)
+            return np.append(points, get(s, "line", LMP_TYPE_SCALAR))
+    many = read(7)
+    np.testing.assert_allclose(read(layers), many, rtol=1e-11)
+    assert many[5] > 0.98 and abs(many[-1] - 0.9) < 1e-3    # half a spacing above the last row
+
+
 @pytest.mark.parametrize("dim", (2, 3))
 def test_values_of_other_computes(dim):
     """c_ID and c_ID[n] are read as p and rho are, images included, at points and over patches; with the shear rate of a linear flow, exactly."""
