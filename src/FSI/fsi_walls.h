@@ -27,6 +27,7 @@
 
 #include "fsi_pack.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -291,6 +292,7 @@ namespace FSI {
           }
       }
     }
+    bool slips() const { return std::equal(sign, sign + 3, rubbing_sign); }
     void reflect(const double *original, double *image) const    // a point
     {
       for (int d = 0; d < 3; d++) image[d] = x[d] + sign[d] * original[d];

@@ -725,37 +725,36 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d] / -volume_of<D>(i);
 }
 
-// The image of a fluid particle is as far from a solid as the particle is from that of the solid
+// a solid that a plane of symmetry cuts, a wall that slips, has the images of fluids around it, too
 void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = disc->dim;
-  double **const x = atom->x, **const v = atom->v;
+  const auto add = [&](int j, const double *v, double W) {
+    for (int d = 0; d < dim; d++) beyond[j][d] += W * v[d];
+    beyond[j][dim] += W;
+  };
   for_levels(*disc, [&](size_t level, const auto &kernel) {
-    const auto add = [&](int j, double rsq, const double *vi) {
-      const double W = kernel.W(std::sqrt(rsq));
-      for (int d = 0; d < dim; d++) beyond[j][d] += W * vi[d];
-      beyond[j][dim] += W;
-    };
     for (const Row &row : pairs.of(level, PairSet::SOLIDS).rows.rows)
-      for_near(row, x, dim, kernel.cutsq, [&](int j, const double *, double rsq) {
-        add(j, rsq, v[row.i]);
+      for_near(row, atom->x, dim, kernel.cutsq, [&](int j, const double *, double rsq) {
+        add(j, atom->v[row.i], kernel.W(std::sqrt(rsq)));
       });
-    pairs.for_images(step->walls, nullptr, [&](const PairSet &set, int k, const Mirror *mirror) {
-      if (set.what != PairSet::SOLIDS || set.level != level) return;
-      for (const Row &row : set.images[k].rows) {
-        double xi[3], vi[3];
-        mirror->reflect(x[row.i], xi);
-        for (int d = 0; d < 3; d++)
-          vi[d] = mirror->rubbing_v[d] + mirror->rubbing_sign[d] * v[row.i][d];
-        for (int m = 0; m < row.n; m++) {
-          const int j = row.j[m] & NEIGHMASK;
+  });
+  const auto add_images = [&](const PairSet &set, const FluidPairs &images, int) {
+    if (set.what != PairSet::SOLIDS || !images.mirror->slips()) return;
+    with_kernel(disc->kernel, dim, set.h, [&](const auto &kernel) {
+      for (const Row &row : images.rows) {
+        double x[3], v[3];
+        images.mirror->reflect(atom->x[row.i], x);
+        images.mirror->reflect_velocity(atom->v[row.i], v);
+        for (const int *j = row.j; j < row.j + row.n; j++) {
           double rsq = 0.0;
-          for (int d = 0; d < dim; d++) rsq += (x[j][d] - xi[d]) * (x[j][d] - xi[d]);
-          if (rsq < kernel.cutsq) add(j, rsq, vi);
+          for (int d = 0; d < dim; d++) rsq += (atom->x[*j][d] - x[d]) * (atom->x[*j][d] - x[d]);
+          if (rsq < kernel.cutsq) add(*j, v, kernel.W(std::sqrt(rsq)));
         }
       }
     });
-  });
+  };
+  pairs.for_images(step->walls, particles_at(nullptr), add_images);
 }
 
 // velocity of solids in viscous forces: where fluid would be inside the solid, that with which the

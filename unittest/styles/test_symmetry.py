@@ -149,7 +149,7 @@ def test_momentum_and_the_force_on_the_plane(style, substeps):
 
 
 DECK = """read_data scene.data
-pair_style hybrid fsi/fluid sound 10 artificial/visc 0.05 0 density/diffusion 0.1 {style}
+pair_style hybrid fsi/fluid sound 10 artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 {style}
 pair_coeff * * fsi/fluid materials.fsi water soft stiff
 pair_coeff * * {name} materials.fsi NULL soft stiff
 fix sph all fsi 0.01 wendland 1.5 {substeps}
@@ -162,7 +162,7 @@ neigh_modify every 2 delay 0 check yes
 comm_modify cutoff 0.04
 thermo_modify norm no lost error
 """
-MATERIALS = materials(water=WATER, soft=RUBBER, stiff="solid rho 1300 young 3e5 poisson 0.45")
+MATERIALS = materials(water=f"{WATER} viscosity 5", soft=RUBBER, stiff="solid rho 1300 young 3e5 poisson 0.45")
 
 
 def bodies_in_water(dim, whole=False):
@@ -227,7 +227,7 @@ def test_restart(tmp_path, style):
 
 @pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
 def test_half_in_water_is_the_whole(tmp_path, one_rank, style):
-    """The same with its mirror image instead of the plane: the same motion of bodies and water, to round-off."""
+    """The same with its mirror image instead of the plane: the same motion of bodies and water, to round-off. The water sticks to the bodies."""
     b = run(tmp_path, deck(2, style, plane="xlo -0.12") + watch(every=100) + "run 200", **files(2, whole=True)).frames()
     for half, whole in zip(one_rank(2, style), b):
         n = len(half["id"])
