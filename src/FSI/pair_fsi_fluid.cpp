@@ -226,7 +226,7 @@ void PairFSIFluid::check_effects(const Facts &of_solids) const
     if (r.so) refuse(error, r.why, r.what);
 
   const bool viscous = std::any_of(material.begin(), material.end(), [](const Material &m) {
-    return m.viscosity > 0.0;
+    return m.viscosity > 0.0 || m.law.varies();    // one that thickens has none at rest
   });
   const bool solids = has_solids();
   const struct {

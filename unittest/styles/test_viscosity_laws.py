@@ -257,6 +257,13 @@ def test_bad_laws(tmp_path, line, message):
     assert done.status != 0 and message in done.errors[0]
 
 
+@pytest.mark.parametrize("law, idle", [("power 1 2", False), ("herschel/bulkley 0 1 1.5 1", False), ("viscosity 0", True)])
+def test_idle_viscosity(tmp_path, law, idle):
+    """A fluid that thickens has no viscosity at rest, and is viscous."""
+    done = lammps(tmp_path, CHANNEL.format(law=law, rows=4, time=0, form="laminar/visc", drive="", sound=3, height=1))
+    assert done.status == 0 and ("laminar/visc has nothing to act on" in done.output) == idle
+
+
 def test_implicit_needs_the_plain_form(tmp_path):
     done = lammps(tmp_path, CHANNEL.format(law="viscosity 1", rows=4, time=0, form="laminar/visc/central laminar/implicit yes", drive="", sound=3, height=1))
     assert done.status != 0 and "laminar/implicit requires laminar/visc" in done.errors[0]
