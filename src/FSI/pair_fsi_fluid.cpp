@@ -729,32 +729,26 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
 void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = disc->dim;
-  const auto add = [&](int j, const double *v, double W) {
-    for (int d = 0; d < dim; d++) beyond[j][d] += W * v[d];
-    beyond[j][dim] += W;
-  };
-  for_levels(*disc, [&](size_t level, const auto &kernel) {
-    for (const Row &row : pairs.of(level, PairSet::SOLIDS).rows.rows)
-      for_near(row, atom->x, dim, kernel.cutsq, [&](int j, const double *, double rsq) {
-        add(j, atom->v[row.i], kernel.W(std::sqrt(rsq)));
-      });
-  });
-  const auto add_images = [&](const PairSet &set, const FluidPairs &images, int) {
-    if (set.what != PairSet::SOLIDS || !images.mirror->slips()) return;
+  const auto add = [&](const PairSet &set, const FluidPairs &of_set, int) {
+    const Mirror mirror = of_set.mirror ? *of_set.mirror : Mirror();
+    if (set.what != PairSet::SOLIDS || !mirror.slips()) return;
     with_kernel(disc->kernel, dim, set.h, [&](const auto &kernel) {
-      for (const Row &row : images.rows) {
+      for (const Row &row : of_set.rows) {
         double x[3], v[3];
-        images.mirror->reflect(atom->x[row.i], x);
-        images.mirror->reflect_velocity(atom->v[row.i], v);
+        mirror.reflect(atom->x[row.i], x);
+        mirror.reflect_velocity(atom->v[row.i], v);
         for (const int *j = row.j; j < row.j + row.n; j++) {
           double rsq = 0.0;
           for (int d = 0; d < dim; d++) rsq += (atom->x[*j][d] - x[d]) * (atom->x[*j][d] - x[d]);
-          if (rsq < kernel.cutsq) add(*j, v, kernel.W(std::sqrt(rsq)));
+          if (rsq >= kernel.cutsq) continue;
+          const double W = kernel.W(std::sqrt(rsq));
+          for (int d = 0; d < dim; d++) beyond[*j][d] += W * v[d];
+          beyond[*j][dim] += W;
         }
       }
     });
   };
-  pairs.for_images(step->walls, particles_at(nullptr), add_images);
+  pairs.for_all(step->walls, particles_at(nullptr), add);
 }
 
 // velocity of solids in viscous forces: where fluid would be inside the solid, that with which the
