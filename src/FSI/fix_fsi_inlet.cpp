@@ -205,13 +205,6 @@ void FixFSIInlet::pre_exchange()
   members->buffer.exchange(ends);
 }
 
-// what has passed the whole buffer, which may end with the box
-bool FixFSIInlet::takes_away(int i) const
-{
-  const double *const x = atom->x[i];
-  return end.is_fluid(i) && end.in_patch(x) && end.inside(x) <= -end.length;
-}
-
 void FixFSIInlet::start_step()
 {
   members->buffer.start_step();

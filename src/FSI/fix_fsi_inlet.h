@@ -58,7 +58,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void advance(bool) override;      // density of the buffer, when the fluid has its own
   void end_state(bool) override;    // is there as much fluid as there is room?
   void prescribe() override;        // velocity of the buffer
-  bool takes_away(int i) const override;
 
   bool holds(const double *x) const;    // is a place in the buffer?
 

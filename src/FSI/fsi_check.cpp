@@ -69,7 +69,7 @@ static bool all_below(int n, const double *a, double most)
 Check::Check(LAMMPS *lmp, const Discretization &disc, const StepState &step,
              const std::vector<Part *> &parts) :
     Pointers(lmp),
-    disc(disc), step(step), parts(parts), stop(lmp, "Fix fsi", disc, step, parts)
+    disc(disc), step(step), stop(lmp, "Fix fsi", disc, step, parts)
 {
 }
 
@@ -298,7 +298,9 @@ void Check::setup()
   judge(Stop::START);
 }
 
-// LAMMPS would say that a position is not finite, or that an atom is lost, but not which
+// LAMMPS would say that a position is not finite, or that an atom is lost, but not which. (Open
+// LAMMPS would say that a position is not finite, or that an atom is lost, but not which. (What
+// leaves by an open end is deleted within the box.)
 void Check::positions()
 {
   const bool keeps = output->thermo->lostflag == Thermo::ERROR;
@@ -316,12 +318,7 @@ void Check::positions()
   });
   for (const int i : outside) {
     const Finding wrong = stop.not_finite(i, false);
-    if (wrong.tag)
-      enter(wrong);
-    else if (std::none_of(parts.begin(), parts.end(), [i](const Part *p) {
-               return p->takes_away(i);
-             }))
-      enter(stop.finding(LOST, i, 1.0));
+    enter(wrong.tag ? wrong : stop.finding(LOST, i, 1.0));
   }
   judge(Stop::DRIFTED);
 }

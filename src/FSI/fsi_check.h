@@ -43,7 +43,6 @@ namespace FSI {
    private:
     const Discretization &disc;
     const StepState &step;
-    const std::vector<Part *> &parts;
     Stop stop;
     std::vector<double> densities;    // per type, in the last run; 0: not known
     std::vector<double> limit_sq;     // per type: of the speed

@@ -116,8 +116,6 @@ namespace FSI {
     // what advance() did, if it was called; what moves
     virtual void undo_advance() {}
     virtual void go_back() {}
-    // does it take this particle away when it leaves the box?
-    virtual bool takes_away(int i) const { return false; }
 
     // Before the first step: what is simulated
     using Effect = Keywords::Effect;
