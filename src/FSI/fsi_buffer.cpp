@@ -22,8 +22,6 @@
 #include "group.h"
 #include "math_extra.h"
 #include "neighbor.h"
-#include "output.h"
-#include "thermo.h"
 #include "update.h"
 
 #include <tuple>
@@ -439,32 +437,26 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
     });
 }
 
-// behind the plane, and no fluid that this end lets pass: LAMMPS would say that it is lost, no more
+// behind the plane, and no fluid that this end lets pass
 void Buffer::check_stranger(int i)
 {
   const double *const x = atom->x[i];
-  const int species = end.disc->state[atom->type[i]].species, axis = end.axis;
+  const int species = end.disc->state[atom->type[i]].species;
   if (!end.in_patch(x)) return;
   if (species == SOLID && end.inside(x) > -end.length)
     error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone",
                atom->tag[i], end.command, end.id);
-  const std::string what = fmt::format(
-      "{}: atom {} of type {}, {},", end.name, atom->tag[i], atom->type[i],
+  if (warned_of_stranger || !is_moved(i, lmp) || end.side * atom->v[i][end.axis] >= 0.0) return;
+  warned_of_stranger = true;
+  error->warning(
+      FLERR,
+      "{}: atom {} of type {}, {}, moves into the buffer, which only fluid of its group can pass: "
+      "it will be lost at the end of the box",
+      end.name, atom->tag[i], atom->type[i],
       species == FLUID ? fmt::format("a fluid that is not of group {}", group->names[end.igroup])
           : species == SOLID ? "of a solid"
           : species == NONE  ? "without a material"
                              : "of a wall or rigid body");
-  const bool out = end.side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
-  if (out && domain->boundary[axis][end.side < 0.0] == 1 &&
-      output->thermo->lostflag == Thermo::ERROR)
-    error->one(FLERR, "{} leaves the box through this end, which lets only fluid of its group pass",
-               what);
-  if (warned_of_stranger || !is_moved(i, lmp) || end.side * atom->v[i][axis] >= 0.0) return;
-  warned_of_stranger = true;
-  error->warning(FLERR,
-                 "{} moves into the buffer, which only fluid of its group can pass: it will be "
-                 "lost at the end of the box",
-                 what);
 }
 
 // The last of a row has come a spacing from the end: another follows it, from the next list on, but
