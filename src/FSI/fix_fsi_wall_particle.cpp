@@ -131,7 +131,7 @@ void FixFSIWallParticle::post_run()
 void FixFSIWallParticle::follow_commands()
 {
   if (!anywhere(!at_end.empty(), world)) return;
-  const auto find_places = [this](const std::vector<Speed> &speeds) {
+  const auto find_places = [](const std::vector<Speed> &speeds) {
     std::map<tagint, const double *> places;
     for (const Speed &s : speeds) places[s.tag] = s.v;
     return places;
