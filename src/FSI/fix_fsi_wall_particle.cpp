@@ -38,7 +38,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -58,6 +57,7 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 1;
   global_freq = 1;
   fields.set("velocity of the last step", Fields::RESTART, true, before, 4);
+  fields.set("velocity at the end of a run", Fields::ATOM, true, at_end, 3);
   register_fields();
   take_over(id);
   post_run();    // of what comes out of a restart file, too
@@ -120,37 +120,16 @@ void FixFSIWallParticle::init()
 
 void FixFSIWallParticle::post_run()
 {
-  at_end.clear();
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *const v = atom->v[i];
-    if (atom->mask[i] & groupbit) at_end.push_back({atom->tag[i], {v[0], v[1], v[2]}});
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) std::copy_n(atom->v[i], 3, at_end[i]);
 }
 
 // A command that gives particles another velocity between runs does not accelerate them in a step
 void FixFSIWallParticle::follow_commands()
 {
-  if (!anywhere(!at_end.empty(), world)) return;
-  const auto find_places = [](const std::vector<Speed> &speeds) {
-    std::map<tagint, const double *> places;
-    for (const Speed &s : speeds) places[s.tag] = s.v;
-    return places;
-  };
-  std::vector<Speed> all = std::move(at_end);
-  at_end.clear();
-  auto place = find_places(all);
-  const auto ran = [&](int i) {
-    return atom->mask[i] & groupbit && before[i][3] > 0.0;
-  };
-  bool gone = false;    // to another rank
-  for (int i = 0; i < atom->nlocal; i++) gone |= ran(i) && !place.count(atom->tag[i]);
-  if (anywhere(gone, world)) {
-    all = gather(all, world);
-    place = find_places(all);
-  }
   for (int i = 0; i < atom->nlocal; i++)
-    if (const auto at = place.find(atom->tag[i]); ran(i) && at != place.end())
-      for (int d = 0; d < 3; d++) before[i][d] += atom->v[i][d] - at->second[d];
+    if ((atom->mask[i] & groupbit) && before[i][3] > 0.0)
+      for (int d = 0; d < 3; d++) before[i][d] += atom->v[i][d] - at_end[i][d];
   post_run();    // not every init() is that of a run
 }
 
@@ -450,5 +429,5 @@ double FixFSIWallParticle::compute_scalar()
 
 double FixFSIWallParticle::memory_usage()
 {
-  return FixFields::memory_usage() + bytes_of(members, at_end);
+  return FixFields::memory_usage() + bytes_of(members);
 }

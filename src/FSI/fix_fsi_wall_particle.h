@@ -62,12 +62,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   bool mixed = false;            // several fluids differ in it: each wall particle has a mean
   std::vector<class FixFSIMove *> movers;
   double **before = nullptr;    // velocity at the last step, and whether there was one
-  // at the end of a run
-  struct Speed {
-    tagint tag;
-    double v[3];
-  };
-  std::vector<Speed> at_end;
+  double **at_end = nullptr;    // velocity at the end of a run
   void follow_commands();
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
