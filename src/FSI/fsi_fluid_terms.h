@@ -443,9 +443,10 @@ namespace FSI {
   {
     using L = Lanes<T>;
     const auto visc = both_viscosities<KIND, FLAGS, T>(laws, constant.visc, j);
-    // what fluid would have in the place of j, of a wall or solid
-    const auto beyond_face = [&](int d) FSI_INLINE_LAMBDA {
-      return constant.mirrors_own ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) {
+    // what fluid would have in the place of j, of a wall or solid; before a plane of symmetry i is
+    // on both sides
+    const auto beyond_face = [&](int d, const T &own) FSI_INLINE_LAMBDA {
+      return constant.mirrors_own ? 2.0 * velocity_of_j[d] - own : L::make([&](int k) {
         return laws.wall_velocity[j[k]][d];
       });
     };
@@ -459,7 +460,9 @@ namespace FSI {
       };
       T w[D], seen[D], back[D], of_j[D];
       for (int d = 0; d < D; d++) {
-        const T vj = KIND == WITH_FLUID ? velocity_of_j[d] : beyond_face(d);
+        const T vj = KIND == WITH_FLUID
+            ? velocity_of_j[d]
+            : beyond_face(d, mirror.slip_v[d] + mirror.slip_sign[d] * pi.v[d]);
         w[d] = pi.v[d] - beyond(d, vj);
         back[d] = vj - beyond(d, pi.v[d]);
         seen[d] = -mirror.sign[d] * x[d];
@@ -477,7 +480,7 @@ namespace FSI {
     } else if (KIND != WITH_FLUID) {
       // fluid beyond the wall or inside the solid, with the velocity extrapolated
       T w[D];
-      for (int d = 0; d < D; d++) w[d] = pi.v[d] - beyond_face(d);
+      for (int d = 0; d < D; d++) w[d] = pi.v[d] - beyond_face(d, pi.v[d]);
       viscous(g, visc, vv, x, w, rubbing);
       if (FLAGS & Flag::SUMS) loss = -product(rubbing, v);
     } else

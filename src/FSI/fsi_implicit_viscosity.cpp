@@ -106,8 +106,9 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const FluidPairs &pairs,
             2.0 * cut_off(in, j, g) * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
         for (int d = 0; d < D; d++) {
           const double sign = image.rubbing_sign[d];
-          diagonal[D * row.i + d] += of_face * (1.0 + sign);
-          given[D * row.i + d] += of_face * (2.0 * sign * atom->v[*j][d] + image.rubbing_v[d]);
+          diagonal[D * row.i + d] += of_face * (1.0 + sign * image.slip_sign[d]);
+          given[D * row.i + d] +=
+              of_face * (sign * (2.0 * atom->v[*j][d] - image.slip_v[d]) + image.rubbing_v[d]);
         }
       }
   });

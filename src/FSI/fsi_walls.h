@@ -275,7 +275,8 @@ namespace FSI {
   struct Mirror {
     double sign[3] = {1.0, 1.0, 1.0}, x[3] = {}, v[3] = {};
     double rubbing_sign[3] = {1.0, 1.0, 1.0}, rubbing_v[3] = {};
-    double deeper[3] = {};    // 1 along axes of hydrostatic walls
+    double slip_sign[3] = {1.0, 1.0, 1.0}, slip_v[3] = {};    // of velocities, in those that slip
+    double deeper[3] = {};                                    // 1 along axes of hydrostatic walls
     Mirror() = default;
     Mirror(const Walls &walls, const Walls::Reflection &s)
     {
@@ -285,6 +286,10 @@ namespace FSI {
         x[w.axis] = 2.0 * w.position;
         v[w.axis] = 2.0 * w.velocity[w.axis];
         deeper[w.axis] = w.hydrostatic;
+        if (!w.noslip) {
+          slip_sign[w.axis] = sign[w.axis];
+          slip_v[w.axis] = v[w.axis];
+        }
         for (int d = 0; d < 3; d++)
           if (w.noslip || d == w.axis) {
             rubbing_sign[d] = -rubbing_sign[d];
