@@ -11,6 +11,7 @@ from scenes import (DX as FINE, KERNELS, WATER, Scene, close, cloud, dam_gate, f
 
 VISCOUS = "fluid rho 1000 viscosity 20"
 C, ALPHA, BETA, DX, H = 10.0, 0.3, 0.5, 0.1, 0.13
+REACH = 3 * H  # of all kernels
 
 class Wall:
     def __init__(self, side, position=0.0, velocity=(0, 0, 0), slip=True, extent=None):
@@ -57,23 +58,21 @@ def ray_reaches(x, target, walls):
     return True
 
 def with_images(x, v, walls):
-    """x_i - x_j, v_ij, v_ij of viscous forces, j, i, for all pairs with neighbors and their images"""
-    n, sets = len(x), [()]
+    """x_i - x_j, v_ij, v_ij of viscous forces, j, i, for all pairs within reach with neighbors and their images"""
+    sets = [()]
     for size in (1, 2, 3):
         sets += [s for s in combinations(walls, size) if len({w.axis for w in s}) == size]
     for s in sets:
         y, u, uv = x, v, v
         for w in s:
             y, u, uv = w.mirror(y), w.mirror_velocity(u, False), w.mirror_velocity(uv, True)
-        for i in range(n):
-            for j in range(n):
-                if not s and i == j:
-                    continue
-                if any(w.distance(x[i]) < 0 or w.distance(x[j]) < 0 for w in s):
-                    continue
-                if any(w.extent for w in s) and not ray_reaches(x[i], y[j], s):
-                    continue
-                yield s, i, j, x[i] - y[j], v[i] - u[j], v[i] - uv[j]
+        before = np.all([w.distance(x) >= 0 for w in s], axis=0)
+        for i, j in zip(*np.nonzero(before & np.reshape(before, (-1, 1)) & (((x[:, None] - y)**2).sum(2) < REACH**2))):
+            if not s and i == j:
+                continue
+            if any(w.extent for w in s) and not ray_reaches(x[i], y[j], s):
+                continue
+            yield s, i, j, x[i] - y[j], v[i] - u[j], v[i] - uv[j]
 
 def reference(scene, x, v, rho, walls, artificial, viscosity, central=False):
     """forces, density rates, and the force on the walls (sum) by brute force"""
