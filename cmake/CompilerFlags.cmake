@@ -19,7 +19,7 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   endif()
   # of the package alone: LAMMPS' own objects come from the compiler cache; both may be on at once
   if(FSI_COVERAGE OR FSI_SANITIZE)
-    list(APPEND FSI_INSTRUMENT -O1 -g)
+    list(APPEND FSI_INSTRUMENT -O1 -g1)
   endif()
   if(FSI_COVERAGE)
     list(APPEND FSI_INSTRUMENT --coverage)

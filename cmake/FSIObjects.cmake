@@ -19,7 +19,7 @@ if(FSI_SANITIZE)
   # all that these loops call is part of them: optimised with all checks they take a quarter of an hour to compile. What the checks left out say
   # of a pointer, AddressSanitizer says where it is used
   set(_loops ${FSI_SOURCES})
-  list(FILTER _loops INCLUDE REGEX "fsi_fluid_loops_(any|wendland)|pair_fsi_solid")
+  list(FILTER _loops INCLUDE REGEX "fsi_fluid_(rows|loops_wendland)|fsi_shear|pair_fsi_solid")
   set_property(SOURCE ${_loops} APPEND PROPERTY COMPILE_OPTIONS -O0 -g0 -fno-sanitize=null,vptr,pointer-overflow,object-size)
 endif()
 # threads of the styles in src/OPENMP: without OpenMP they have one

@@ -13,6 +13,7 @@ os.environ["PYTHONPATH"] = os.pathsep.join([os.path.dirname(__file__), *filter(N
 for name, value in {"mpi_yield_when_idle": "1", "pml": "ob1", "btl": "self,vader", "ess_singleton_isolated": "1", "odls_base_sigkill_timeout": "0"}.items():
     os.environ.setdefault(f"OMPI_MCA_{name}", value)
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # so do threads
+os.environ.setdefault("HWLOC_PLUGINS_PATH", os.devnull)  # Open MPI loads X11, OpenCL and XML with them, a sixth of its start
 # its folder of sessions is removed by who leaves it empty, maybe while another process begins one there: one for each worker
 os.environ["OMPI_MCA_orte_tmpdir_base"] = tempfile.mkdtemp(prefix="fsi_mpi_")
 
@@ -23,6 +24,7 @@ def pytest_unconfigure():
 
 def pytest_addoption(parser):
     parser.addoption("--pairs-seed", type=int, default=0, help="draws other scenes for unittest/pairs")
+    parser.addoption("--last-case", action="store_true", help="runs only the last case of each test with parameters")
 
 
 def pytest_configure(config):
@@ -46,8 +48,10 @@ def pytest_runtest_protocol():
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     """Tests that share what a fixture of their file has run, or a folder, stay together (pytest-xdist, --dist loadgroup); others go where a core is free."""
+    if config.getoption("--last-case"):
+        items[:] = {(item.path, item.originalname): item for item in items}.values()
     for item in items:
         fixtures = item._fixtureinfo.name2fixturedefs.values()  # pylint: disable=protected-access
         if item.path.parent.name in ("tools", "docs") or any(definitions[-1].scope == "module" for definitions in fixtures):
