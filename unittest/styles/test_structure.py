@@ -141,3 +141,11 @@ def test_laws_are_without_lammps(law):
     """A law could be compiled for a device: it includes other laws and the C++ library alone."""
     allowed = {f"fsi_{name}.h" for name in LAWS} | {"math_const.h", "math_eigen.h"}  # without the rest of LAMMPS
     assert set(re.findall(r'#include "([^"]+)"', SOURCES[f"fsi_{law}.h"].read_text())) <= allowed
+
+
+def test_build_names_sources_that_are_there():
+    """Sources with compile options of their own are found by their names: of one with another name the options would be gone without a word."""
+    patterns = re.findall(r'(?:INCLUDE|EXCLUDE) REGEX "([^"/]+)"', (paths.ROOT / "cmake/FSIObjects.cmake").read_text())
+    assert len(patterns) == 2
+    for name in "|".join(patterns).split("|"):
+        assert any(name in file for file in SOURCES), name
