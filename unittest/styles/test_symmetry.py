@@ -240,7 +240,7 @@ def test_half_in_water_is_the_whole(tmp_path, one_rank, style):
 @pytest.mark.parametrize("n, axes", [([6, 6], (0,)), ([5, 6], (0, 1)), ([5, 4, 4], (0,))])
 def test_half_in_viscous_water_is_the_whole(n, axes, form):
     """Water sticks to a body two particles thick: the mean velocity around these is of the water on both sides, beyond the plane, too. Velocities after 20 steps,
-    to round-off; without the images of water, or of a particle's own velocity, they differed by 1 to 3 parts in a thousand."""
+    to round-off; without the images of water, or with its own velocity mirrored, they differed by 1 to 4 parts in a thousand."""
     x, random = lattice(n, DX), np.random.default_rng(4)
     body = (x[:, 0] < DX) & (x[:, 1] < 4 * DX)
     v = random.uniform(-0.3, 0.3, x.shape) * (np.arange(3) < len(n))
