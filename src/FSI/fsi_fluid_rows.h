@@ -271,12 +271,10 @@ namespace FSI {
           {WITH_FLUID, SHIFT | EDGES, 0},
           {WITH_FLUID, DIFFUSION, SUMS | IMAGES | PARTLY},
           {WITH_FLUID, DIFFUSION | SHIFT | EDGES, SUMS | IMAGES | PARTLY},
-          {WITH_FLUID, DIFFUSION | SHIFT | SLOPES, SUMS | PARTLY},
-          {WITH_FLUID, DIFFUSION | SHIFT | IMAGES, SUMS | PARTLY},
+          {WITH_FLUID, DIFFUSION | SHIFT | SLOPES, SUMS | IMAGES | PARTLY},
           {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL, IMAGES | PARTLY},
           {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | EDGES, IMAGES | PARTLY},
-          {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | SLOPES, PARTLY},
-          {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | IMAGES, PARTLY},
+          {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | SLOPES, IMAGES | PARTLY},
       };
     };
 
@@ -462,7 +460,7 @@ namespace FSI {
           (fluid && (laws.delta > 0.0 || (shift && laws.fills) || images || pairs.in.unlike));
       const int shifting = !shift ? 0
           : !laws.fills           ? SHIFT | EDGES
-          : fluid && !images      ? SHIFT | SLOPES
+          : fluid                 ? SHIFT | SLOPES
                                   : SHIFT;
       return flags_of(pairs) | shifting | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0) |
           (shift && pairs.in.fade ? FADES : 0) | unequal_flag(pairs, images);

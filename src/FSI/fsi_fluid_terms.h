@@ -183,18 +183,21 @@ namespace FSI {
     static constexpr int N = shift_sums<D>(FLAGS), ROW = shift_row<D>(FLAGS);
     using L = Lanes<T>;
     const Mirror mirror;
+    const double mirrors_flow;              // 1 where the flow goes on beyond a wall that slips
     double factors[ROW], own_factors[D];    // of what a pair adds to j, to have what i has of it
     T both[L::totals(N + 1)], of_i[N];
 
    public:
     static constexpr bool TAKES_RATES = (FLAGS & Flag::SHIFT) && N > D;
-    FSI_INLINE explicit ShiftOfRow(const Mirror &mirror_in) : mirror(mirror_in)
+    FSI_INLINE explicit ShiftOfRow(const Mirror &mirror_in) :
+        mirror(mirror_in), mirrors_flow(mirror_in.slips())
     {
       for (int k = 0; k < ROW; k++)
         factors[k] = k >= N                  ? 0.0
             : !Shift<D>::is_vector(k, EDGES) ? 1.0
             : IMAGES                         ? -mirror.sign[k % D]
                                              : -1.0;
+      if (IMAGES && SLOPES) Shift<D>::signs_of_slopes(mirror.sign, factors);
       // of what fades each has its own sum
       for (int d = 0; d < D; d++) own_factors[d] = factors[d];
       for (int d = 0; FADES && d < D; d++) factors[d] = 0.0;
@@ -216,7 +219,12 @@ namespace FSI {
       if constexpr (!BOTH) {
         for (int k = 0; k < N; k++) of_i[k] += part[k];
       } else {
-        if constexpr (SLOPES) Shift<D>::slopes_of_pair(part, g, x, v);
+        if constexpr (SLOPES && IMAGES) {
+          T v_back[D];
+          for (int d = 0; d < D; d++) v_back[d] = mirror.sign[d] * v[d];
+          Shift<D>::slopes_of_pair(part, mirrors_flow * g, back, v_back);
+        } else if constexpr (SLOPES)
+          Shift<D>::slopes_of_pair(part, g, x, v);
         if constexpr (EDGES || SLOPES)
           part[N] = *rate_j;
         else
@@ -460,9 +468,8 @@ namespace FSI {
       };
       T w[D], seen[D], back[D], of_j[D];
       for (int d = 0; d < D; d++) {
-        const T vj = KIND == WITH_FLUID
-            ? velocity_of_j[d]
-            : beyond_face(d, mirror.slip_v[d] + mirror.slip_sign[d] * pi.v[d]);
+        const T vj = KIND == WITH_FLUID ? velocity_of_j[d]
+                                        : beyond_face(d, mirror.own_velocity(d, pi.v[d]));
         w[d] = pi.v[d] - beyond(d, vj);
         back[d] = vj - beyond(d, pi.v[d]);
         seen[d] = -mirror.sign[d] * x[d];

@@ -133,7 +133,8 @@ namespace FSI {
   // 36, have it as a term of the rate):
   //   delta v_i = delta r_i.grad v,  g_ij = grad_i W_ij,
   //     grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,
-  // of fluid neighbors alone, exact for linear fields wherever they are. This does not
+  // of fluid neighbors alone, exact for linear fields wherever they are, and of their images in
+  // walls that slip, which are planes of symmetry of the flow. This does not
   // keep momentum, so it is done where the fluid fills its box: there walls and streams give and
   // take momentum all the time; a jet or a drop has but its own. Density goes along unchanged:
   // delta r.grad rho would be sound. Between open ends alone, where density and volume would drift
@@ -214,6 +215,15 @@ namespace FSI {
         const T gx = g * x_ij[a], gv = g * v_ij[a];
         for (int b = a; b < D; b++) part[D + Sym<D>::id(a, b)] = gx * x_ij[b];
         for (int b = 0; b < D; b++) part[D + Sym<D>::N + a * D + b] = gv * x_ij[b];
+      }
+    }
+
+    // the factors of these sums where what j sees is what i sees under these signs of axes
+    static void signs_of_slopes(const double *sign, double *factor)
+    {
+      for (int a = 0; a < D; a++) {
+        for (int b = a; b < D; b++) factor[D + Sym<D>::id(a, b)] = sign[a] * sign[b];
+        for (int b = 0; b < D; b++) factor[D + Sym<D>::N + a * D + b] = sign[a] * sign[b];
       }
     }
 

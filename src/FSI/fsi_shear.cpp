@@ -79,7 +79,7 @@ static void add_rows(const RowSpan rows, const Mirror &mirror, const K &kernel,
         Number x[D], v[D], u[D], part[ROW];
         for (int d = 0; d < D; d++)
           u[d] = OF_FLUIDS ? pj.v[d]
-              : thin       ? 2.0 * pj.v[d] - pi.v[d]
+              : thin       ? 2.0 * pj.v[d] - mirror.own_velocity(d, pi.v[d])
                            : Lanes<Number>::make([&](int k) {
                          return laws.wall_velocity[j[k]][d];
                        });

@@ -298,6 +298,11 @@ namespace FSI {
       }
     }
     bool slips() const { return std::equal(sign, sign + 3, rubbing_sign); }
+    // what a body's image has of the water before it: planes that slip have water on both sides
+    template <class T> FSI_INLINE T own_velocity(int d, const T &u) const
+    {
+      return slip_v[d] + slip_sign[d] * u;
+    }
     void reflect(const double *original, double *image) const    // a point
     {
       for (int d = 0; d < 3; d++) image[d] = x[d] + sign[d] * original[d];

@@ -48,17 +48,22 @@ def expected(x, volume, moves, kernel, dx, dim, walls, fills):
     return out, missing, size > most
 
 
-def change_of_velocity(x, v, volume, fluid, kernel, dim, step):
-    """step.grad v of fluid neighbors, by least squares with the weights -V_j g_ij, and the determinant of its matrix."""
+def change_of_velocity(x, v, volume, fluid, kernel, dim, walls, step):
+    """step.grad v of fluid neighbors and their images, by least squares with the weights -V_j g_ij, and the determinant of its matrix."""
     x, v, step = x[fluid, :dim], v[fluid, :dim], step[fluid]
-    d, dv = x[None] - x[:, None], v[None] - v[:, None]
-    r = np.linalg.norm(d, axis=2)
-    np.fill_diagonal(r, np.inf)
-    weight = np.zeros_like(r)
-    weight[r < kernel.cut] = -kernel.g(r[r < kernel.cut])
-    weight *= volume[fluid][None]
-    matrix = np.einsum("ij,ija,ijb->iab", weight, d, d)
-    slopes = np.einsum("ij,ija,ijb->iab", weight, dv, d)
+    matrix, slopes = np.zeros((2, len(x), dim, dim))
+    for reflected in product((False, True), repeat=len(walls)):
+        sign = np.ones(dim)
+        sign[[axis for axis, yes in zip(walls, reflected) if yes]] = -1
+        d, dv = (sign * of[None] - of[:, None] for of in (x, v))
+        r = np.linalg.norm(d, axis=2)
+        if not any(reflected):
+            np.fill_diagonal(r, np.inf)
+        weight = np.zeros_like(r)
+        weight[r < kernel.cut] = -kernel.g(r[r < kernel.cut])
+        weight *= volume[fluid][None]
+        matrix += np.einsum("ij,ija,ijb->iab", weight, d, d)
+        slopes += np.einsum("ij,ija,ijb->iab", weight, dv, d)
     det = np.linalg.det(matrix)
     change = np.einsum("iab,ibc,ic->ia", slopes, np.linalg.inv(matrix), step)
     return np.clip((det - 0.02) / 0.08, 0, 1)[:, None] * change, det
@@ -99,22 +104,23 @@ def test_displacement(n, kernel, background):
     assert bounded.any() and not bounded.all()
     # coordinates of order 1 and displacements of 1e-3: round-off of the difference
     assert np.abs(difference["x"] - want).max() < 1e-13
-    change, det = change_of_velocity(x, v, volume, fluid, support, len(n), want)
+    change, det = change_of_velocity(x, v, volume, fluid, support, len(n), walls, want)
     assert (det > 0.1).any() and np.abs(change).max() > 1e-3
     assert np.abs(difference["v"][fluid] - (change if background else 0)).max() < 1e-13
     # rates with shifting may add up in another order
     assert not difference["v"][~fluid].any() and np.abs(difference["rho"]).max() < 1e-13 * 1000
 
 
+@pytest.mark.parametrize("shear", [0, 1])
 @BOTH
-def test_velocity_is_that_of_the_flow(n):
-    """In a flow whose velocity is linear in place particles have exactly that after the step, at surfaces, walls and solids, too."""
-    slope = np.array([[0.3, -0.2, 0.1], [0.5, 0.1, -0.4], [-0.3, 0.2, -0.4]])
+def test_velocity_is_that_of_the_flow(n, shear):
+    """In a flow whose velocity is linear in place particles have exactly that after the step, at surfaces and solids, too; at walls that slip if there is no shear."""
+    slope = np.array([[0.3, -0.2, 0.1], [0.5, 0.1, -0.4], [-0.3, 0.2, -0.4]]) * np.where(np.eye(3), 1, shear)
     slope[:, len(n):] = slope[len(n):] = 0.0
-    x, v, volume, fluid, support, _, difference = one_step(n, "quintic", lambda x, v: x @ slope.T, background=5)
-    _, det = change_of_velocity(x, v, volume, fluid, support, len(n), difference["x"])
-    there = det > 0.1
-    assert there.sum() > 0.6 * fluid.sum()
+    x, v, volume, fluid, support, walls, difference = one_step(n, "quintic", lambda x, v: x @ slope.T, background=5)
+    _, det = change_of_velocity(x, v, volume, fluid, support, len(n), walls, difference["x"])
+    there = (det > 0.1) & ((x[fluid][:, walls] > support.cut).all(1) | (not shear))
+    assert there.sum() > (10 if shear else 0.6 * fluid.sum())
     want = difference["x"] @ slope[:len(n), :len(n)].T
     assert np.abs(want[fluid][there]).max() > 1e-4
     assert np.abs(difference["v"] - want)[fluid][there].max() < 1e-13
@@ -204,6 +210,7 @@ def test_evens_out():
     assert spread[1] < 0.25 * spread[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [(20, 20), (14, 8, 8)], ids=["2D", "3D"])
 def test_density_follows_between_open_ends(n):
     """There rho - m psi is a constant of each particle that moves and is shifted; without them shifting alone leaves rho."""
