@@ -59,6 +59,8 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
     error->all(
         FLERR,
         "Fix fsi/stream requires keyword rate: of the fluid's approach to the velocity, 1/time");
+  if (!velocity->given(0) && !velocity->given(1) && !velocity->given(2) && density_rate == 0.0)
+    error->all(FLERR, "Fix fsi/stream drives nothing: expected a velocity or keyword density");
   if (along >= domain->dimension)
     error->all(FLERR, "Fix fsi/stream along z: there is no flow along z in 2D");
 

@@ -148,6 +148,7 @@ BAD = [
     ("along z in 2D", {"stream": STREAM + " along z"}, r"no flow along z in 2D"),
     ("vz in 2D", {"stream": STREAM.replace("NULL", "0")}, r"along z must be NULL in 2D"),
     ("velocity", {"stream": STREAM.replace("v_u", "fast")}, r"velocity fast is not a number: expected a number, or NULL or v_name"),
+    ("nothing to drive", {"stream": "fix s all fsi/stream NULL NULL NULL region zone rate 20"}, r"drives nothing: expected a velocity or keyword density"),
     ("unknown region", {"zone": ""}, r"Region zone of fix fsi/stream does not exist"),
     ("unknown variable", {"stream": STREAM.replace("v_u", "v_fast")}, r"Variable fast of fix fsi/stream does not exist"),
     ("wrong variable", {"stream": "variable i index 1\n" + STREAM.replace("v_u", "v_i")}, r"Variable i of fix fsi/stream must be equal-style or atom-style"),
