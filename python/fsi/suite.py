@@ -64,11 +64,16 @@ def outcomes(report, status):
     return passed, failed
 
 
-def other_builds():
-    """(passed, failed) of the small scenes under other builds of LAMMPS (unittest/tools/variants.py)."""
+def variants():
+    """unittest/tools/variants.py"""
     sys.path.insert(0, str(paths.ROOT / "unittest" / "tools"))
-    import variants
-    return variants.main([])
+    import variants as module
+    return module
+
+
+def other_builds():
+    """(passed, failed) of the small scenes under other builds of LAMMPS."""
+    return variants().main([])
 
 
 def kokkos():
@@ -76,11 +81,13 @@ def kokkos():
     tool = str(paths.ROOT / "tools" / "kokkos")
     if subprocess.run([tool, "--possible"], check=False).returncode:
         return 0, 0
-    build = paths.ROOT / "build-kokkos-test"  # less optimized: compiling takes two thirds of the time, and the tests are short
+    build = paths.ROOT / "build-kokkos-test"  # few styles, less optimized: compiling takes half the time, and the tests are short
     report = build / "report.xml"  # which that system sees
     report.unlink(missing_ok=True)
-    options = {"FSI_KOKKOS_BUILD": str(build), "FSI_CMAKE_OPTIONS": "-DCMAKE_CXX_FLAGS_RELEASE=-O1"}
-    status = subprocess.run([tool, "--test", "-q", f"--junitxml={report}"], env={**os.environ, **options}, check=False).returncode
+    lammps = subprocess.run([tool, "--lammps"], env={**os.environ, "LAMMPS_SOURCE_DIR": ""}, stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+    options = {"FSI_KOKKOS_BUILD": str(build), "FSI_CMAKE_OPTIONS": "-DCMAKE_CXX_FLAGS_RELEASE=-O1",
+               "LAMMPS_SOURCE_DIR": str(variants().with_few_styles(Path(lammps), build / "few-styles"))}
+    status = subprocess.run([tool, "--test", "-q", "-n", str(launch.cores()), f"--junitxml={report}"], env={**os.environ, **options}, check=False).returncode
     return outcomes(report, status)
 
 
