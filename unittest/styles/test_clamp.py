@@ -35,6 +35,7 @@ def momenta(s):
     return (m * v).sum(0), turn.sum(0), np.abs(m * v).sum(), np.abs(turn).sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n, block", [([24, 4], 6), ([24, 4], 1), ([14, 3, 4], 4)])
 @pytest.mark.parametrize("substeps", [10, 40])
 def test_momenta_and_energy_of_a_free_beam(n, block, substeps):
@@ -104,6 +105,7 @@ def test_period_of_a_rod_with_a_rigid_end(held):
     assert abs(period * omega / (2 * np.pi) - 1) < 0.01
 
 
+@pytest.mark.slow
 def test_tether():
     """Fix spring holds the rigid part; what it adds is held in the sub-steps. A beam far stiffer than the spring swings with all of its mass."""
     stiff, dt = 500.0, 4e-4
@@ -474,6 +476,7 @@ def apart(a, b, box=(0.4, 0.3, 0.01)):
     return np.abs(d - np.round(d / box) * box).max(), np.abs(a.vector(("vx", "vy", "vz")) - b.vector(("vx", "vy", "vz"))).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ranks, grid, newton", [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "2 2 1", "on"), (4, "2 2 1", "off")])
 def test_ranks(tmp_path, one_rank, ranks, grid, newton):
     """Two beams with rigid parts of another material cross a periodic box more than once, and borders of ranks part the materials: as on one
@@ -484,6 +487,7 @@ def test_ranks(tmp_path, one_rank, ranks, grid, newton):
         assert x < 1e-12 and v < 1e-9, (x, v)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ranks, grid, newton", [(1, "1 1 1", "on"), (2, "2 1 1", "off"), (4, "2 2 1", "on")])
 def test_rigid_small(tmp_path, one_rank, ranks, grid, newton):
     """The same bodies, each kept by the rank of one of its atoms: as with fix rigid, to round-off as above."""

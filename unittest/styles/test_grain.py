@@ -269,6 +269,7 @@ dump_modify d sort id time yes format float %.17g
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dim", (2, 3))
 def test_ranks(tmp_path, dim):
     """Forces of 1, 2 and 4 ranks, newton on and off, agree to round-off at the start; all of the state after 100 steps."""

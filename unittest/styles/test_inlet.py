@@ -212,6 +212,7 @@ def test_groups_that_are_used_up(tmp_path):
     assert "Too many groups (max 32)" in lammps(tmp_path, text + "run 0\n", **FILES).errors[0]
 
 
+@pytest.mark.slow
 def test_channel():
     """Poiseuille's flow from end to end, five times through: profile and pressure, nothing lost, no more particles than at first."""
     dx, L, U, mu = 0.1, 3.0, 1.0, 100.0
@@ -249,6 +250,7 @@ def test_channel():
         assert abs(np.mean(drop) / (12 * mu * U * L) - 1) < 0.10
 
 
+@pytest.mark.slow
 def test_flow_between_pressures():
     """Poiseuille's flow from one pressure to another in a channel twice as long as high: what a plane takes from the profile, or from the
     gradient behind it, is missing in the flow: 24 % with a linear fit and the given pressure all along the buffer, some 5 % without the gradient."""
@@ -268,6 +270,7 @@ def test_flow_between_pressures():
         assert abs(come - 1) < 0.04 and abs(gone - 1) < 0.04
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("background", [50.0, 200.0])
 def test_flow_between_pressures_with_a_background(background):
     """Poiseuille's flow where the background is 2.5 and 10 times what drives it. What pushes goes with pressure and the square of number
@@ -385,6 +388,7 @@ def channel(ends, **variables):
     return given + CHANNEL + ends + "fix fill all print 20 '${fill} $(f_i[11]) $(f_o[11])' file fill.txt screen no\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends, mu, steps, variables", [
     (SWINGING, 0.01, 8500, dict(dx=0.002, L=0.06, H=0.02, c=5, back=500, shift=0.1)),
     (REVERSING, 1, 8000, dict(dx=0.01, L=0.3, H=0.1, c=10, back=2000, shift=0.1)),
@@ -482,6 +486,7 @@ def test_body_near_a_plane(tmp_path, start):
     assert ("is within a spacing of its plane x = 0: behind it the buffer has a hole" in out) == (start == 0)
 
 
+@pytest.mark.slow
 def test_body_near_a_plane_does_not_starve_it(tmp_path):
     """What is given comes in for as long as it flows, past a body that stirs what the buffer sees: with copies a buffer's length behind what
     passes the plane a column that was once left out was missing ever after (0.91 of the flow at this time)."""

@@ -293,6 +293,7 @@ def turned_angle():
     return "solid angle\n" + "".join(lines) + "endsolid\n", axes
 
 
+@pytest.mark.slow
 def test_turned_stl(tmp_path):
     """Edges in no direction of the lattice, one of them reentrant: sums of a tenth of those of a lattice that is cut, and each on its side."""
     text, axes = turned_angle()

@@ -167,6 +167,7 @@ def test_pairs_are_mutual_and_nearest_first():
         assert s.n == 3
 
 
+@pytest.mark.slow
 def test_still_fluid_moves_through_the_zone():
     """Under a background pressure, five times through: mass to the bit, momentum to round-off, and particles that settle at once keep most of
     the mean pressure's fall away: 0.0025 of the density, without settling 0.0089, which is all of the pressure."""
@@ -483,6 +484,7 @@ def thermo(result, step):
     return [line for line in result.output.splitlines() if re.match(rf" *{step} ", line)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dim, steps", [(2, 200), (3, 30)])
 def test_ranks(tmp_path, dim, steps):
     """The same particles with the same IDs on any number of ranks, with newton off, too, to round-off."""
@@ -543,6 +545,7 @@ def test_settling_looks_further_than_ghosts(tmp_path, below, grid, neighbor, bal
     assert difference(one, two, "x") < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", ["refine", "balance"])
 def test_balance(tmp_path, first):
     """Ranks that take and give particles in the steps in which these split and merge, by either fix first: the same to round-off."""
@@ -603,6 +606,7 @@ thermo_modify norm no lost error format float %20.15g
 
 
 # the second between two rows of water
+@pytest.mark.slow
 @pytest.mark.parametrize("strip", [dict(hole="0.74 0.86", faces="0.75 0.85", spacing=0.025, thin=""),
                                    dict(hole="0.79 0.81", faces="0.7875 0.8125", spacing=0.0125, thin="thin 4")], ids=["thick", "thin"])
 def test_levels_around_an_elastic_body(tmp_path, strip):
@@ -640,6 +644,7 @@ def found_levels(given):
     return begin, physics
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_types_spacings_and_distances_follow(tmp_path, ranks):
     """From the distance and spacing of the finest level around a moving body: bit for bit what they are where all are given, and from a restart file."""

@@ -289,6 +289,7 @@ def test_substeps_with_fluid_converge():
     assert np.abs(ends[2e-4, 4] - ends[2e-4, 8]).max() < 0.1 * one
 
 
+@pytest.mark.slow
 def test_substeps_with_fluid_keep_energy():
     """With sub-steps the ledger's imbalance is that of the fluid's own step, of first order in it, whatever their number.
 
@@ -312,6 +313,7 @@ def test_substeps_with_fluid_keep_energy():
     assert 0.4 < drift[1e-4, 16] / drift[2e-4, 16] < 0.6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("density", [500, 100, 50])
 @pytest.mark.parametrize("sides", [1, 2])
 def test_substeps_of_light_plates_in_water(density, sides):

@@ -144,6 +144,7 @@ def column(ratio, kind, depth=20, layers=None, seconds=0.5):
         return np.mean(load) / (0.5 * 1000 * 9.81 * H**2), np.mean(p), leaked
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["body", "wall"])
 def test_hydrostatic_load(kind):
     """Of water 20 particles deep. Its own spacing sets the error; finer or coarser particles beside it change the load by less than 0.5 %
@@ -198,6 +199,7 @@ def test_reflection_coarsest(kernel, hdx, coarser):
     assert abs(result - 0.5) < 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dim, ratio", [(2, 2), (2, 0.5), (3, 2)])
 def test_ranks_and_newton(tmp_path, dim, ratio):
     agree_on_ranks(tmp_path, fine_gate(dim, ratio))

@@ -439,6 +439,7 @@ def test_ledger_closes():
     assert error[-1] < 5e-3 and error[2] < 0.6 * error[1] < 0.36 * error[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dim", [2, 3])
 def test_ranks_and_newton(tmp_path, dim):
     """Who is hidden is the same on each rank"""
@@ -452,6 +453,7 @@ def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
 
 # ---- in water of several spacings ----
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind, layers, ratio, coarse", [("wall", 1, 1, "far"), ("wall", 1, 2, "right"), ("wall", 2, 2, "far"), ("plate", 2, 1, "right")])
 def test_two_levels_in_levels(kind, layers, ratio, coarse):
     """test_two_levels with coarser water: load, moment and pressures of one spacing to 1 % of those of the depth"""
@@ -511,6 +513,7 @@ def levels_with_plate(dim):
                    ids=np.arange(1, len(x) + 1), box=box, sph=scene.sph + " thin 3")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dim", [2, 3])
 def test_ranks_and_newton_in_levels(tmp_path, dim):
     agree_on_ranks(tmp_path, levels_with_plate(dim))

@@ -121,6 +121,7 @@ def test_rotation_changes_no_stress():
 # ---- waves and swings ----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @DIMS
 @pytest.mark.parametrize("wave", ["shear", "axial"])
 def test_wave_is_damped_as_the_complex_modulus_says(dim, wave):

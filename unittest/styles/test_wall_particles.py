@@ -355,6 +355,7 @@ print "KE $(ke(water))"
     assert value(result, "AFTER") == pytest.approx(value(result, "BEFORE"), abs=1e-3 * value(result, "KE"))
 
 
+@pytest.mark.slow
 def test_piston(tmp_path):
     """A side of the tank moved inwards by a third of its length, at first fast: nothing leaks, the level rises by what is displaced (half a
     spacing), and what the wall does is what the water gets (the ledger)."""
@@ -423,6 +424,7 @@ fix m lid move linear {speed} 0 0
         assert np.abs(error).max() < 0.03 * speed
 
 
+@pytest.mark.slow
 def test_turning_wall(tmp_path):
     """Couette flow between a cylinder that turns and one at rest, 16 and 24 spacings in radius: the velocity A r + B/r that fits the water's is that of
     the wall at its surface within 2 %, of which the curvature of r^-1 over the kernel is half. That of the wall's particles, which are half a spacing and
@@ -485,6 +487,7 @@ print "FY $(f_mean[2])"
     assert abs(value(result, "FX")) < 0.01 * displaced
 
 
+@pytest.mark.slow
 def test_rigid_body_floats(tmp_path):
     """A body of density 400 under fix rigid, let go 0.4 dx too low, settles with 0.4 of it in the water; half a spacing."""
     width = 10
@@ -591,6 +594,7 @@ def test_tight_under_impact(tmp_path, dim, mach, guard):
     assert through(tmp_path, dim, mach * C, 0.3, guard) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dim", [2, 3])
 def test_only_the_guard_stops_light_spray(tmp_path, dim):
     """That the test above can fail, and what the guard is for."""
