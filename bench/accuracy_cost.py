@@ -20,20 +20,24 @@ def load(name, given):
     path = paths.EXAMPLES / name / "cost.json"
     if not path.exists():
         known = [folder.parent.name for folder in sorted(paths.EXAMPLES.glob("*/cost.json"))]
-        raise Refusal(f"there is no {path.name} of a scene '{name}'. Scenes that have one: {', '.join(known)}")
+        raise Refusal(f"there is no {path.name} of a scene '{name}'. Scenes that have one: "
+                      f"{', '.join(known)}")
     try:
         definition = json.loads(path.read_text())
     except ValueError as error:
         raise Refusal(f"{path}: {error}") from None
-    definition["command"] = "tools/cost " + " ".join([name, *(f"{k}={v}" for k, v in given.items())])
+    definition["command"] = "tools/cost " + " ".join(
+        [name, *(f"{k}={v}" for k, v in given.items())])
     definition["common"] = {**definition.get("common", {}), **given}
     return definition
 
 
 def points(definition):
-    """Every run that a definition asks for: [{"role", "group", "label", "x", "settings"}], a run may have several roles.
+    """Every run that a definition asks for: [{"role", "group", "label", "x", "settings"}], a run
+    may have several roles.
 
-    Roles: curve (x: value of the resolution), knob (x: value), effect (x: whether it is the base), corner.
+    Roles: curve (x: value of the resolution), knob (x: value), effect (x: whether it is the base),
+    corner.
     """
     common, variable = definition["common"], definition["resolution"]["variable"]
     found = []
@@ -51,10 +55,12 @@ def points(definition):
 
     for name, method in definition["methods"].items():
         for value in method["at"]:
-            add("curve", name, f"{name}, {variable} = {value:g}", value, method["settings"], {variable: value})
+            add("curve", name, f"{name}, {variable} = {value:g}", value, method["settings"],
+                {variable: value})
     for knob in definition.get("knobs", ()):
         values = knob["values"]
-        choices = values.items() if isinstance(values, dict) else ((v, {knob["variable"]: v}) for v in values)
+        choices = values.items() if isinstance(values, dict) else ((v, {knob["variable"]: v})
+                                                                   for v in values)
         for label, change in choices:
             add("knob", knob["name"], f"{knob['name']} = {label}", label, base(knob), change)
     for effect in definition.get("effects", ()):
@@ -68,7 +74,8 @@ def points(definition):
 
 
 def representatives(definition, store):
-    """[(label, settings)]: of each method the middle one of the resolutions that ran, where its instructions are counted."""
+    """[(label, settings)]: of each method the middle one of the resolutions that ran, where its
+    instructions are counted."""
     found = []
     for name in definition["methods"]:
         curve = [p for p in points(definition) if p["role"] == "curve" and p["group"] == name]
@@ -78,11 +85,13 @@ def representatives(definition, store):
 
 
 def work(definition, settings):
-    """What a run should cost, in any unit, from its resolution and time step: for the order of runs and the time left."""
+    """What a run should cost, in any unit, from its resolution and time step: for the order of runs
+    and the time left."""
     value = float(settings[definition["resolution"]["variable"]])
     fineness = value if definition["resolution"]["finer"] == "up" else 1.0 / value
     sound = float(settings.get("c", settings.get("sound", 10)))
-    return fineness**(definition.get("dimension", 2) + 1) * sound / 10.0 / float(settings.get("cfl", BASE_CFL))
+    return fineness**(definition.get("dimension", 2) + 1) * sound / 10.0 / float(
+        settings.get("cfl", BASE_CFL))
 
 
 def analysed(name):
@@ -96,7 +105,8 @@ def analysed(name):
 
 
 def printed(name):
-    """The same for a deck of its own: what it prints as FSI NAME value, or the end of a thermo column; and whether that still moves."""
+    """The same for a deck of its own: what it prints as FSI NAME value, or the end of a thermo
+    column; and whether that still moves."""
     def measure(folder):
         found = log.read(folder / "log.lammps")
         if name in found.values:
@@ -104,26 +114,32 @@ def printed(name):
         else:
             column = found.column(name, f"v_{name}")
             if column is None:
-                raise ValueError(f"the log has neither a line 'FSI {name} value' nor a thermo column {name} or v_{name}")
+                raise ValueError(f"the log has neither a line 'FSI {name} value' nor a thermo "
+                                 f"column {name} or v_{name}")
             value = float(column[-1])
         return {name: value, cost_report.MOVING: still_moving(folder, found, name, value)}
     return measure
 
 
 def still_moving(folder, found, name, value):
-    """series.still_moving() of the column that a figure is of: its own, or else the one whose end or extreme it is; None where there is none."""
-    tables = [{key: found.column(key) for key in dict.fromkeys(key for run in found.runs for key in run.thermo)}]
+    """series.still_moving() of the column that a figure is of: its own, or else the one whose end
+    or extreme it is; None where there is none."""
+    tables = [{key: found.column(key)
+               for key in dict.fromkeys(key for run in found.runs for key in run.thermo)}]
     for path in sorted(folder.glob("*.csv")):
         with contextlib.suppress(ValueError):  # another kind of table
             tables.append(series.read(path).columns)
     for own in (True, False):
         for table in tables:
-            time = next((table[key] for key in ("v_time", "Time", "time", "v_t", "t", "Step") if key in table), None)
+            time = next((table[key] for key in ("v_time", "Time", "time", "v_t", "t", "Step")
+                         if key in table), None)
             for key, column in table.items():
                 if time is None or column is time or len(column) != len(time) or len(column) < 3:
                     continue
-                ends = (column[-1], column.max(), column.min(), np.abs(column).max(), np.ptp(column))
-                if key in (name, f"v_{name}") if own else np.isclose(value, ends, rtol=1e-3, atol=0.0).any() and np.ptp(column):
+                ends = (column[-1], column.max(), column.min(), np.abs(column).max(),
+                        np.ptp(column))
+                if key in (name, f"v_{name}") if own else np.isclose(
+                    value, ends, rtol=1e-3, atol=0.0).any() and np.ptp(column):
                     return series.still_moving(time, column)
     return None
 
@@ -134,7 +150,8 @@ def own_deck(path, vary, measure, given):
     try:
         values = [float(v) for v in values]
     except ValueError:
-        raise Refusal(f"--vary {variable}: the first one is the resolution and must be numbers") from None
+        raise Refusal(
+            f"--vary {variable}: the first one is the resolution and must be numbers") from None
     whole = all(v == int(v) and v >= 1.0 for v in values)  # a number of particles; else a spacing
     values = [int(v) for v in values] if whole else values
     values.sort(reverse=not whole)
@@ -146,9 +163,11 @@ def own_deck(path, vary, measure, given):
     words = "".join(f" --vary {n}={','.join(map(str, v))}" for n, v in vary.items())
     return {
         "title": path.name, "figure": measure, "label": f"error of {measure}",
-        "reference": None, "resolution": {"variable": variable, "finer": "up" if whole else "down", "text": variable},
+        "reference": None,
+        "resolution": {"variable": variable, "finer": "up" if whole else "down", "text": variable},
         "common": given, "methods": {n: {"settings": s, "at": values} for n, s in methods.items()},
-        "command": f"tools/cost {path.name}{words} --measure {measure}" + "".join(f" {k}={v}" for k, v in given.items())}
+        "command": f"tools/cost {path.name}{words} --measure {measure}"
+        + "".join(f" {k}={v}" for k, v in given.items())}
 
 
 def name_of(deck):
@@ -176,7 +195,8 @@ def parse(arguments):
             assigned.append(argument)
     options, settings = split(assigned, OPTIONS)
     for name in ("budget", "limit", "repeats"):
-        options[name] = number(name, options[name], int if name == "repeats" else float) if name in options else None
+        options[name] = number(name, options[name], int if name == "repeats"
+                               else float) if name in options else None
     return what, options, settings, vary, measure
 
 
@@ -184,7 +204,8 @@ def main(arguments):
     what, options, given, vary, measure = parse(arguments)
     bundled = what in scene.scenes()
     if bundled and (vary or measure):
-        raise Refusal("--vary and --measure are for a deck of your own; a scene's sweep is in its cost.json")
+        raise Refusal("--vary and --measure are for a deck of your own; a scene's sweep is in its "
+                      "cost.json")
     if bundled:
         definition, deck_path, name = load(what, given), scene.deck(what), what
         measure, files = analysed(what), ()
@@ -193,7 +214,8 @@ def main(arguments):
         if not deck_path.is_file():
             raise Refusal(f"'{what}' is neither a scene nor a file")
         if not vary or not measure:
-            raise Refusal("a deck of your own needs --vary NAME=V1,V2,V3 (the resolution first) and --measure NAME")
+            raise Refusal("a deck of your own needs --vary NAME=V1,V2,V3 (the resolution first) "
+                          "and --measure NAME")
         definition = own_deck(deck_path, vary, measure, given)
         name, measure = name_of(deck_path), printed(measure)
         beside = deck_path.resolve().parent.iterdir()
@@ -208,18 +230,21 @@ def main(arguments):
     if options.get("draw") is None and not scene.build():
         return 1
 
-    store = sweep.Store(folder / "points", deck, measure, files, options["limit"] or 600.0, options["repeats"], options.get("source"))
+    store = sweep.Store(folder / "points", deck, measure, files, options["limit"] or 600.0,
+                        options["repeats"], options.get("source"))
     if options.get("draw") is None:
         for settings in (point["settings"] for point in wanted if bundled):
             if there := left(deck, name, settings):  # what tools/run left is not run again
                 store.take(settings, there, figures_of(there))
-        complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"])) for p in wanted],
+        complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"]))
+                                       for p in wanted],
                                say, options["budget"])
         if complete:
             sweep.count(store, representatives(definition, store), say)
     for point in wanted:
         point["run"] = store.get(point["settings"])
-    summary = cost_report.write(folder, name, definition, [p for p in wanted if p["run"]], store.source)
+    summary = cost_report.write(folder, name, definition, [p for p in wanted if p["run"]],
+                                store.source)
     if summary["moving"]:
         say(f"cost: warning: {cost_report.moving(summary)}")
     print(f"cost: page, picture and table are in {folder}")

@@ -1,4 +1,5 @@
-"""What each effect costs: time, instructions, memory and messages of a step with it, over those without. tools/cost effects"""
+"""What each effect costs: time, instructions, memory and messages of a step with it, over those
+without. tools/cost effects"""
 
 import re
 
@@ -10,7 +11,8 @@ from tool import Job, say
 from fsi import plot, scene
 from fsi.command import Refusal, start
 
-COLUMNS = ("scene", "effect", "time", "spread", "instructions", "memory", "messages", "bytes", "collectives")
+COLUMNS = ("scene", "effect", "time", "spread", "instructions", "memory", "messages", "bytes",
+           "collectives")
 
 
 # ---- scenes: functions of what is named; n particles along x, m along y ----
@@ -53,7 +55,8 @@ fix gravity all gravity 9.81 vector 0 -1 0
 
 def updated(n, m, style="", sph="", stress="", material="plate", commands="", bodies=1):
     """A plate, swirling, in updated-Lagrangian form."""
-    body = "set group all mol 1" if bodies == 1 else f"region low block INF INF INF {0.5 * m / n!r} INF INF\nset group all mol 1\nset region low mol 2"
+    body = ("set group all mol 1" if bodies == 1 else "region low block INF INF INF "
+            f"{0.5 * m / n!r} INF INF\nset group all mol 1\nset region low mol 2")
     return _start(n, m) + f"""{body}
 pair_style fsi/solid {style}
 pair_coeff * * materials.fsi {material}
@@ -73,19 +76,27 @@ fix sph all fsi {1 / n!r} wendland 1.5 {sph}
 
 
 def gate(n, _, without=(), water="", rubber="", commands=""):
-    """The bundled deck, n particles per metre, without its output, its balancing and some of its effects, with others."""
+    """The bundled deck, n particles per metre, without its output, its balancing and some of its
+    effects, with others."""
     text = scene.deck("elastic_gate").read_text()
-    cut = {"viscosity": r" artificial/visc 0.05 0", "diffusion": r" density/diffusion 0.1", "walls": r"^fix +walls .*$",
-           "rubber viscosity": r"(?<=fsi/solid/tl) artificial/visc 0.1 0", "output": r"^(dump|fix +tip|compute +(disp|last|previous|front|fields)|print"
-           r"|variable +(tip_x|tip_y|front|reflected)|run|fix +balance|thermo_style|thermo_modify|dump_modify|thermo) .*(\n[^\n]*title.*|\n +id type.*)?$"}
-    # the time step of the start, with a number of sub-steps that does not change: one run's instructions are another's
+    cut = {"viscosity": r" artificial/visc 0.05 0", "diffusion": r" density/diffusion 0.1",
+           "walls": r"^fix +walls .*$",
+           "rubber viscosity": r"(?<=fsi/solid/tl) artificial/visc 0.1 0",
+           "output": r"^(dump|fix +tip|compute +(disp|last|previous|front|fields)|print"
+           r"|variable +(tip_x|tip_y|front|reflected)|run|fix "
+           r"+balance|thermo_style|thermo_modify|dump_modify|thermo) .*(\n[^\n]*title.*|\n +id "
+           r"type.*)?$"}
+    # the time step of the start, with a number of sub-steps that does not change: one run's
+    # instructions are another's
     dx, n_sub = 1 / n, 1 if "substeps" in without else 8
-    text = re.sub(r"^fix +dt .*$", f"timestep {0.375 * dx * n_sub / 153!r}", re.sub(r"^(fix +sph .*)$", rf"\1 substeps {n_sub}", text, flags=re.M), flags=re.M)
+    text = re.sub(r"^fix +dt .*$", f"timestep {0.375 * dx * n_sub / 153!r}",
+                  re.sub(r"^(fix +sph .*)$", rf"\1 substeps {n_sub}", text, flags=re.M), flags=re.M)
     for part in ("output", *(part for part in without if part != "substeps")):
         text, count = re.subn(cut[part], "", text, flags=re.M)
         if not count:
             raise Refusal(f"the gate's deck has no '{cut[part]}' any more")
-    text = text.replace('"fsi/fluid sound', f'"fsi/fluid {water} sound').replace("fsi/solid/tl artificial", f"fsi/solid/tl {rubber} artificial")
+    text = text.replace('"fsi/fluid sound', f'"fsi/fluid {water} sound').replace(
+        "fsi/solid/tl artificial", f"fsi/solid/tl {rubber} artificial")
     text = re.sub(r"^(variable +dx index) \S+", rf"\1 {1 / n!r}", text, flags=re.M)
     return text + f"{commands}\nthermo 1000000\n"
 
@@ -93,7 +104,8 @@ def gate(n, _, without=(), water="", rubber="", commands=""):
 STEP = "fix dt all fsi/dt 10"
 WATCH = "fix watch all fsi/watch 10 distance off density off energy off"
 LEDGER = "compute ledger all fsi/energy\nthermo_style custom step c_ledger[1]"
-DEFAULTS = ("*hourglass 0.05*, *gradient quadratic* and *volumetric auto* of `fsi/solid/tl`, *solid/guard 0.5* of `fsi/fluid`, "
+DEFAULTS = ("*hourglass 0.05*, *gradient quadratic* and *volumetric auto* of `fsi/solid/tl`, "
+            "*solid/guard 0.5* of `fsi/fluid`, "
             "*mach 1* of `fix fsi`")  # what is on without being named; their pages have it
 
 SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
@@ -110,7 +122,8 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "tension, Tait, background": {"style": "eos tait tension yes background 1"},
         "adaptive time step": {"commands": STEP},
         "monitor (fix fsi/watch)": {"commands": WATCH},
-        "energy balance": ({"style": "artificial/visc 0.05 0"}, {"style": "artificial/visc 0.05 0", "commands": LEDGER})}),
+        "energy balance": ({"style": "artificial/visc 0.05 0"},
+                           {"style": "artificial/visc 0.05 0", "commands": LEDGER})}),
     "updated": ("Solid, updated Lagrangian", updated, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
         "artificial stress": {"style": "artificial/stress 0.3"},
@@ -146,13 +159,15 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "adaptive time step": {"commands": STEP},
         "monitor (fix fsi/watch)": {"commands": WATCH},
         "energy balance": {"commands": LEDGER}})}
-TIMED, COUNTED = {"gate": (1000, 0)}, {"gate": (400, 0)}  # n, m of the timed and of the counted runs; elsewhere:
+# n, m of the timed and of the counted runs; elsewhere:
+TIMED, COUNTED = {"gate": (1000, 0)}, {"gate": (400, 0)}
 SIZE, SMALL, STEPS = (160, 100), (40, 25), {"fluid": 60, "updated": 60, "total": 120, "gate": 60}
 
 
 def cases(name):
     """[(effect, settings without, settings with)] of a scene."""
-    return [(label, *(change if isinstance(change, tuple) else ({}, change))) for label, change in SCENES[name][2].items()]
+    return [(label, *(change if isinstance(change, tuple) else ({}, change)))
+            for label, change in SCENES[name][2].items()]
 
 
 def deck(name, settings, size):
@@ -166,17 +181,22 @@ def rows_of(name, kept, turns):
     small = [deck(name, s, COUNTED.get(name, SMALL)) for _, *both in cases(name) for s in both]
     say(f"cost: {SCENES[name][0]}: counting instructions of {len(small)} runs")
     counts = kept.get(["instructions", small], lambda: measure.instructions(small))
-    still = [re.sub(r"^timestep .*", "timestep 1e-7", text, flags=re.M) for text in small]  # no list is rebuilt on the way
+    # no list is rebuilt on the way
+    still = [re.sub(r"^timestep .*", "timestep 1e-7", text, flags=re.M) for text in small]
     sent = kept.get(["messages", still], lambda: measure.messages(still))
     rows = []
     for k, (label, without, with_it) in enumerate(cases(name)):
-        found = kept.pair(*(deck(name, s, TIMED.get(name, SIZE)) + f"\nrun {STEPS[name]}" for s in (without, with_it)), turns)
+        found = kept.pair(*(deck(name, s, TIMED.get(name, SIZE)) + f"\nrun {STEPS[name]}"
+                            for s in (without, with_it)), turns)
         a, b = sent[2 * k], sent[2 * k + 1]
         row = {"scene": name, "effect": label, "time": found.ratio - 1, "spread": found.spread,
-               "instructions": counts[2 * k + 1] / counts[2 * k] - 1, "memory": found.memory[1] - found.memory[0],
-               "messages": b["messages"] - a["messages"], "bytes": (b["bytes"] - a["bytes"]) / a["ghosts"],
+               "instructions": counts[2 * k + 1] / counts[2 * k] - 1, "memory": found.memory[1]
+               - found.memory[0],
+               "messages": b["messages"] - a["messages"], "bytes": (b["bytes"] - a["bytes"])
+               / a["ghosts"],
                "collectives": b["collectives"] - a["collectives"]}
-        say("cost:   {effect}: time {time:+.1%} ± {spread:.1%}, instructions {instructions:+.1%}, {memory:+.0f} B a particle, "
+        say("cost:   {effect}: time {time:+.1%} ± {spread:.1%}, instructions {instructions:+.1%}, "
+            "{memory:+.0f} B a particle, "
             "{messages:+.2g} messages and {bytes:+.1f} B a ghost".format(**row))
         rows.append(row)
     return rows
@@ -186,19 +206,24 @@ HIGHEST = 1.0  # where bars are cut
 
 
 def draw(path, rows):
-    """Instructions that each effect adds, the dearest first, a panel for each scene; cut at HIGHEST, where the number stands instead."""
+    """Instructions that each effect adds, the dearest first, a panel for each scene; cut at
+    HIGHEST, where the number stands instead."""
     tables = [[r for r in rows if r["scene"] == name] for name in SCENES]
     with plot.picture(path, 9.6, 6.0) as figure:
-        grid = figure.add_gridspec(2, 2, height_ratios=[max(len(t) for t in tables[:2]) + 2, max(len(t) for t in tables[2:]) + 2])
+        grid = figure.add_gridspec(2, 2, height_ratios=[max(len(t) for t in tables[:2]) + 2,
+                                                        max(len(t) for t in tables[2:]) + 2])
         for place, name, table in zip(grid, SCENES, tables):
             axes = figure.add_subplot(place)
             table = sorted(table, key=lambda r: -r["instructions"])
             value = [min(r["instructions"], HIGHEST) for r in table]
-            axes.barh(range(len(table)), [100 * v for v in value], 0.7, color=[plot.GREEN if v < 0 else plot.BLUE for v in value])
+            axes.barh(range(len(table)), [100 * v for v in value], 0.7,
+                      color=[plot.GREEN if v < 0 else plot.BLUE for v in value])
             for k, row in enumerate(table):
-                axes.text(100 * max(value[k], 0.0), k, f" {100 * row['instructions']:+.0f}" + " →" * (row["instructions"] > HIGHEST), va="center", fontsize=7)
+                axes.text(100 * max(value[k], 0.0), k, f" {100 * row['instructions']:+.0f}" + " →"
+                          * (row["instructions"] > HIGHEST), va="center", fontsize=7)
             axes.set_yticks(range(len(table)), [r["effect"] for r in table], fontsize=7.5)
-            axes.set(xlim=(-12, 118), ylim=(len(table) - 0.4, -0.6), xlabel="instructions added to a step [%]")
+            axes.set(xlim=(-12, 118), ylim=(len(table) - 0.4, -0.6),
+                     xlabel="instructions added to a step [%]")
             axes.set_title(SCENES[name][0], loc="left", weight="bold")
             axes.axvline(0.0, color=plot.GREY, linewidth=0.8)
             axes.grid(axis="y", visible=False)
@@ -211,22 +236,33 @@ def _added(value, form):
 
 
 def page(rows, variants):
-    """The page's text; variants: rows of tools/cost solids, of which the same in three dimensions; none while those are not there."""
+    """The page's text; variants: rows of tools/cost solids, of which the same in three dimensions;
+    none while those are not there."""
     lines = ["# What each effect costs", "",
-             "Besides the defaults an effect that a script does not name is not computed, stored or sent.", f"On by default: {DEFAULTS}.",
+             "Besides the defaults an effect that a script does not name is not computed, stored "
+             "or sent.", f"On by default: {DEFAULTS}.",
              "This is what naming an effect adds to a step.", "",
              "![Instructions that each effect adds](effects.png)", "",
-             "- Instructions of the time loop are counted by valgrind. They do not depend on the machine's load. Bars are cut at 100 %.",
-             "- Time: CPU time with the effect over that without, in turns in one process: median ± half the range.",
-             "- Memory: bytes of each particle. Messages and bytes: what one of two ranks sends in a step, bytes for each ghost particle. Empty: nothing.",
-             "- The scenes are small: 1,000 particles. Walls are near many of them, and cost less in larger scenes.",
-             "- The gate is the bundled one, solids included. There an effect of the water is a smaller share.", "",
-             "| scene | effect | instructions | in 3D | time | memory [B] | messages | bytes | collective calls |", "|---|---|---:|---:|---:|---:|---:|---:|---:|"]
+             "- Instructions of the time loop are counted by valgrind. They do not depend on the "
+             "machine's load. Bars are cut at 100 %.",
+             "- Time: CPU time with the effect over that without, in turns in one process: median "
+             "± half the range.",
+             "- Memory: bytes of each particle. Messages and bytes: what one of two ranks sends in "
+             "a step, bytes for each ghost particle. Empty: nothing.",
+             "- The scenes are small: 1,000 particles. Walls are near many of them, and cost less "
+             "in larger scenes.",
+             "- The gate is the bundled one, solids included. There an effect of the water is a "
+             "smaller share.", "",
+             "| scene | effect | instructions | in 3D | time | memory [B] | messages | bytes | "
+             "collective calls |", "|---|---|---:|---:|---:|---:|---:|---:|---:|"]
     for name, (title, *_) in SCENES.items():
         for k, r in enumerate(r for r in rows if r["scene"] == name):
             three = solid_variants.added(variants, 3, name, r["effect"])
-            lines.append(f"| {'' if k else title} | {r['effect']} | {r['instructions']:+.1%} | {'' if three is None else f'{three:+.1%}'} | {r['time']:+.0%} ± {r['spread']:.0%} | "
-                         f"{_added(r['memory'], '+.0f')} | {_added(r['messages'], '+.2g')} | {_added(r['bytes'], '+.1f')} | {_added(r['collectives'], '+.2g')} |")
+            lines.append(f"| {'' if k else title} | {r['effect']} | {r['instructions']:+.1%} | "
+                         f"{'' if three is None else f'{three:+.1%}'} | {r['time']:+.0%} ± "
+                         f"{r['spread']:.0%} | "
+                         f"{_added(r['memory'], '+.0f')} | {_added(r['messages'], '+.2g')} | "
+                         f"{_added(r['bytes'], '+.1f')} | {_added(r['collectives'], '+.2g')} |")
     for what, (variant, over) in solid_variants.FORMS.items() if variants else ():
         two, three = (solid_variants.ratio(variants, dim, variant, over) - 1.0 for dim in (2, 3))
         lines.append(f"| Solid | {what} | {two:+.1%} | {three:+.1%} | | | | | |")

@@ -1,4 +1,5 @@
-"""The film on the front page: three bundled scenes, one after the other. The command line of tools/film, which says what it does."""
+"""The film on the front page: three bundled scenes, one after the other. The command line of
+tools/film, which says what it does."""
 
 import re
 import subprocess
@@ -47,17 +48,21 @@ def tank(length, width):
 
 
 SCENES = {
-    "dam_break_elastic": Scene("Dam break on an elastic plate", {"dx": "0.004"}, (0.0, 0.38, 0.01), 0.004, ((-0.035, 0.6), (-0.065, 0.3)), 3.0, 9e4,
+    "dam_break_elastic": Scene("Dam break on an elastic plate", {"dx": "0.004"}, (0.0, 0.38, 0.01),
+                               0.004, ((-0.035, 0.6), (-0.065, 0.3)), 3.0, 9e4,
                                (2, 3), view="14,14,y", edges=tank(0.584, 0.08), cut=0.04),
-    "turek_hron_fsi": Scene("Elastic flag in the wake of a cylinder", {"across": "2"}, (8.0, 9.0, 0.02), 0.01, ((0.0, 1.0), (0.0, 0.41)), 2.2, 6e4, (3,),
+    "turek_hron_fsi": Scene("Elastic flag in the wake of a cylinder", {"across": "2"},
+                            (8.0, 9.0, 0.02), 0.01, ((0.0, 1.0), (0.0, 0.41)), 2.2, 6e4, (3,),
                             (2, 4), (3,)),
-    "elastic_gate": Scene("Water breaks through a rubber gate", {"dx": "0.001"}, (0.0, 0.36, 0.008), 0.001, ((-0.01, 0.3), (-0.008, 0.16)), 2.0, 4e5,
+    "elastic_gate": Scene("Water breaks through a rubber gate", {"dx": "0.001"}, (0.0, 0.36, 0.008),
+                          0.001, ((-0.01, 0.3), (-0.008, 0.16)), 2.0, 4e5,
                           (2,), (3,), edges=(((0, 0.17), (0, 0), (1, 0)),)),
 }
 
 
 def deck(name):
-    """The bundled deck of a scene with a dump of its own in place of the deck's: from the first time on."""
+    """The bundled deck of a scene with a dump of its own in place of the deck's: from the first
+    time on."""
     first, last, step = SCENES[name].times
     lines = scene_lines(name)
     go = next((line.split("#")[0].split() for line in lines if line.startswith("fsi/run ")), None)
@@ -67,8 +72,10 @@ def deck(name):
     axes = "xy" if any(re.match(r"dimension\s+2", line) for line in lines) else "xyz"
     kept = [line for line in lines if not re.match(r"(fsi/dump|fsi/run)\s", line)]
     columns = " ".join(["id type", *axes, *(f"v{axis}" for axis in axes), "c_film"])
-    return "\n".join([*kept, *([f"fsi/run {first}{keywords}"] if first else []), "compute film all fsi/atom vonmises",
-                      f"dump film all custom 1 film.dump {columns}", f"dump_modify film every/time {step} sort id time yes colname c_film vonmises",
+    return "\n".join([*kept, *([f"fsi/run {first}{keywords}"] if first else []),
+                      "compute film all fsi/atom vonmises",
+                      f"dump film all custom 1 film.dump {columns}", "dump_modify film every/time "
+                      f"{step} sort id time yes colname c_film vonmises",
                       f"fsi/run {last}" + ("" if first else keywords)]) + "\n"
 
 
@@ -90,7 +97,8 @@ def run(name, folder):
         (folder / other.name).write_text(other.read_text())
     say(f"film: running {name}")
     with open(folder / "out", "w", encoding="utf-8") as out:
-        if subprocess.run(launch.lammps("in.film", 1, SCENES[name].variables), cwd=folder, env=launch.environment(), stdin=subprocess.DEVNULL,
+        if subprocess.run(launch.lammps("in.film", 1, SCENES[name].variables), cwd=folder,
+                          env=launch.environment(), stdin=subprocess.DEVNULL,
                           stdout=out, stderr=subprocess.STDOUT, check=False).returncode:
             raise Refusal(f"{name} stopped: {folder / 'out'}")
     (folder / "done").touch()
@@ -98,7 +106,8 @@ def run(name, folder):
 
 def font(size, bold=False):
     """Matplotlib's own, which is wherever matplotlib is."""
-    return ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"DejaVuSans{'-Bold' if bold else ''}.ttf"), size)
+    return ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts" / "ttf"
+                                  / f"DejaVuSans{'-Bold' if bold else ''}.ttf"), size)
 
 
 class Stage:
@@ -117,7 +126,8 @@ class Stage:
         """One frame as a picture."""
         shown = self.shown
         if shown.view:
-            frame = frame.select((frame["y"] > 0.0) & (np.isin(frame["type"], shown.solid) | (frame["z"] < shown.cut)))
+            frame = frame.select((frame["y"] > 0.0)
+                                 & (np.isin(frame["type"], shown.solid) | (frame["z"] < shown.cut)))
         picture = Image.new("RGB", SIZE, NIGHT)
         pen = ImageDraw.Draw(picture)
         self._head(pen, picture, frame.time)
@@ -132,9 +142,12 @@ class Stage:
         colours[solid] = STRESS(Normalize(0.0, shown.stress)(frame["vonmises"][solid]))
         if shown.view:
             frame = plot.seen([frame], shown.view)[0][0]
-        radius = (plot.ROUND if shown.view else plot.FLAT) * shown.spacing * np.where(np.isin(frame["type"], shown.fine), 0.5, 1.0)
-        for part in [slice(None)] if shown.view else [fluid, solid, wall]:  # what is not water lies above it
-            layer = Image.fromarray(paint.discs(self.size, shown.limits, frame["x"][part], frame["y"][part], radius[part], colours[part],
+        radius = (plot.ROUND if shown.view else plot.FLAT) * shown.spacing * np.where(
+            np.isin(frame["type"], shown.fine), 0.5, 1.0)
+        # what is not water lies above it
+        for part in [slice(None)] if shown.view else [fluid, solid, wall]:
+            layer = Image.fromarray(paint.discs(self.size, shown.limits, frame["x"][part],
+                                                frame["y"][part], radius[part], colours[part],
                                                 frame["depth"] if shown.view else None))
             inside.paste(layer, (0, 0), layer)
         picture.paste(inside, self.corner)
@@ -159,8 +172,11 @@ class Stage:
         pen.text((MARGIN, 37), f"t = {time:.2f} s", font=font(15), fill=INK)
         large = self.shown.stress >= 1e6
         for k, (colours, label) in enumerate(((WATER, f"speed, 0 to {self.shown.speed:g} m/s"),
-                                              (STRESS, f"stress, 0 to {self.shown.stress / (1e6 if large else 1e3):g} {'MPa' if large else 'kPa'}"))):
-            strip = (255 * colours(np.linspace(0.0, 1.0, 150))[None, :, :3]).astype(np.uint8).repeat(8, axis=0)
+                                              (STRESS, "stress, 0 to "
+                                               f"{self.shown.stress / (1e6 if large else 1e3):g} "
+                                               f"{'MPa' if large else 'kPa'}"))):
+            strip = (255 * colours(np.linspace(0.0, 1.0, 150))[None, :, :3]).astype(
+                np.uint8).repeat(8, axis=0)
             left = SIZE[0] - MARGIN - 320 + 170 * k
             picture.paste(Image.fromarray(strip), (left, 18))
             pen.text((left, 33), label, font=font(13), fill=INK)
@@ -169,7 +185,8 @@ class Stage:
 def write(path, pictures):
     """An animated WebP below LARGEST bytes."""
     for quality in (80, 70, 60, 50, 40, 30):
-        pictures[0].save(path, "WEBP", save_all=True, append_images=pictures[1:], duration=round(1000 / RATE), loop=0, quality=quality, method=4)
+        pictures[0].save(path, "WEBP", save_all=True, append_images=pictures[1:],
+                         duration=round(1000 / RATE), loop=0, quality=quality, method=4)
         if path.stat().st_size <= LARGEST:
             return quality
     raise Refusal(f"{path} has {path.stat().st_size} bytes, more than {LARGEST}")
@@ -178,16 +195,19 @@ def write(path, pictures):
 def main(arguments):
     """tools/film"""
     options, _ = split(arguments, ("out", "film"), "out=FOLDER or film=FILE.webp", more=False)
-    folder, target = Path(options.get("out", paths.RESULTS / "film")).resolve(), Path(options.get("film", TARGET))
+    folder, target = Path(options.get("out", paths.RESULTS / "film")).resolve(), Path(
+        options.get("film", TARGET))
     if not scene.build():
         return 1
     pictures = []
     for name, shown in SCENES.items():
         run(name, folder / name)
         stage = Stage(shown)
-        pictures += [stage.draw(frame) for frame in dump.frames(folder / name / "film.dump", progress=Progress(f"film: drawing {name}"))]
+        pictures += [stage.draw(frame) for frame in dump.frames(
+            folder / name / "film.dump", progress=Progress(f"film: drawing {name}"))]
     quality = write(target, pictures)
-    say(f"film: {target}, {len(pictures)} pictures, quality {quality}, {target.stat().st_size} bytes")
+    say(f"film: {target}, {len(pictures)} pictures, quality {quality}, {target.stat().st_size} "
+        "bytes")
     return 0
 
 

@@ -1,4 +1,5 @@
-"""Measures inputs of LAMMPS: CPU time of pairs in turns, instructions, memory, messages. For the tools of this folder and the tests."""
+"""Measures inputs of LAMMPS: CPU time of pairs in turns, instructions, memory, messages. For the
+tools of this folder and the tests."""
 
 import json
 import os
@@ -15,8 +16,10 @@ from pathlib import Path
 from fsi import launch, log, paths
 from fsi.command import Refusal
 
-SHORT, LONG = 4, 24  # steps of the two runs whose difference is taken: what is done once per run cancels
-# glibc's allocator from within: how long it looks for a block depends on what was freed before, not on what is asked for
+# steps of the two runs whose difference is taken: what is done once per run cancels
+SHORT, LONG = 4, 24
+# glibc's allocator from within: how long it looks for a block depends on what was freed before, not
+# on what is asked for
 ALLOCATOR = re.compile(r"_(int|mid)_(malloc|free|realloc|memalign)|malloc_consolidate|unlink_chunk")
 MATERIALS = """# DATE: 2026-11-21 UNITS: si CITATION: none
 water fluid rho 1000 viscosity 1
@@ -37,7 +40,8 @@ def write_materials(text):
 
 @dataclass
 class Pair:
-    """B against A: seconds of each turn, of measure.pair() CPU seconds of a particle-step; what both have beside time, per particle."""
+    """B against A: seconds of each turn, of measure.pair() CPU seconds of a particle-step; what
+    both have beside time, per particle."""
 
     a: list
     b: list
@@ -61,15 +65,19 @@ class Pair:
 def execute(command, folder, binary=None):
     """Runs a command in a folder."""
     env = launch.environment()
-    env["LD_BIND_NOW"] = "1"  # else the first call of a library's function looks for it, in whichever run that is
+    # else the first call of a library's function looks for it, in whichever run that is
+    env["LD_BIND_NOW"] = "1"
     if binary:  # with the library beside it
         env["LD_LIBRARY_PATH"] = str(Path(binary).parent)
-    done = subprocess.run(command, cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    done = subprocess.run(command, cwd=folder, env=env, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
     if done.returncode:
         path = folder / "log.lammps"
-        output = (done.stdout + (path.read_text(errors="replace") if path.exists() else "")).splitlines()
-        lines = [line for line in output if line.startswith("ERROR") or "Exception" in line] or output[-3:]
+        output = (done.stdout
+                  + (path.read_text(errors="replace") if path.exists() else "")).splitlines()
+        lines = [line for line in output if line.startswith("ERROR")
+                 or "Exception" in line] or output[-3:]
         raise Failed("; ".join(lines)[:300])
 
 
@@ -85,12 +93,14 @@ def seconds(folder, text):
     before = os.times()
     run(folder, text)
     after = os.times()
-    return after.children_user + after.children_system - before.children_user - before.children_system
+    return (after.children_user + after.children_system - before.children_user
+            - before.children_system)
 
 
 def peak(folder):
     """Bytes at the peak of a run that ends with `info memory out log`."""
-    return float(re.search(r"Maximum resident set size: (\S+) Mbyte", (folder / "log.lammps").read_text())[1]) * 2**20
+    return float(re.search(r"Maximum resident set size: (\S+) Mbyte",
+                           (folder / "log.lammps").read_text())[1]) * 2**20
 
 
 def simulate(text, ranks=1, binary=None):
@@ -101,26 +111,32 @@ def simulate(text, ranks=1, binary=None):
 
 
 def pair(a, b, turns, binary=None):
-    """Two inputs, each with one run, in turns in one process: A B B A A B ..., so that what the machine does else falls on both."""
+    """Two inputs, each with one run, in turns in one process: A B B A A B ..., so that what the
+    machine does else falls on both."""
     order = "".join("AB" if k % 2 == 0 else "BA" for k in range(turns))
-    runs = simulate("\nclear\n".join({"A": a, "B": b}[which] for which in order), binary=binary).finished
+    runs = simulate("\nclear\n".join({"A": a, "B": b}[which] for which in order),
+                    binary=binary).finished
     if len(runs) != len(order):
         raise Failed(f"{len(runs)} of {len(order)} runs ended")
     of = [[r for r, o in zip(runs, order) if o == which] for which in "AB"]
-    return Pair(*([r.cpu_seconds / r.steps / r.atoms for r in mine] for mine in of), memory=[mine[0].bytes_per_rank / mine[0].atoms for mine in of],
+    return Pair(*([r.cpu_seconds / r.steps / r.atoms for r in mine] for mine in of),
+                memory=[mine[0].bytes_per_rank / mine[0].atoms for mine in of],
                 neighbours=[(mine[0].neighbours or 0) / mine[0].atoms for mine in of])
 
 
 def profiles(texts):
-    """What the time loop executes: ({function: instructions} of SHORT steps, that of LONG steps) of each of some inputs without run command.
+    """What the time loop executes: ({function: instructions} of SHORT steps, that of LONG steps) of
+    each of some inputs without run command.
 
-    One process for all, since valgrind starts slowly. Without the insides of ALLOCATOR, that a list built in either run calls.
+    One process for all, since valgrind starts slowly. Without the insides of ALLOCATOR, that a list
+    built in either run calls.
     """
     if shutil.which("valgrind") is None:
         raise Failed("valgrind is not installed: tools/setup installs it")
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
         folder = Path(name)
-        run(folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts), before=launch.callgrind("count", parts=True))
+        run(folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts),
+            before=launch.callgrind("count", parts=True))
         # a part is what was counted up to the next run; the last has no number
         parts = sorted(folder.glob("count.*"), key=lambda p: int(p.suffix[1:])) + [folder / "count"]
         found = [_functions(p.read_text()) for p in parts if p.exists()][-2 * len(texts):]
@@ -151,24 +167,28 @@ def instructions(texts):
 
 
 def messages(texts, ranks=2, join=None):
-    """What a rank sends per step in each of some inputs without run command: [{"messages", "empty", "bytes", "collectives", "reduced", "ghosts", "particles",
-    "memory" (bytes at the peak)}].
+    """What a rank sends per step in each of some inputs without run command: [{"messages", "empty",
+    "bytes", "collectives", "reduced", "ghosts", "particles", "memory" (bytes at the peak)}].
 
-    Means over the ranks, or what `join` makes of the list of them; no run may rebuild its lists but at its start.
+    Means over the ranks, or what `join` makes of the list of them; no run may rebuild its lists but
+    at its start.
     """
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
         folder = Path(name)
         compiler = shutil.which("mpicc")
         if compiler is None:
             raise Failed("mpicc is not installed: tools/setup installs it")
-        subprocess.run([compiler, "-O1", "-shared", "-fPIC", "-o", "count.so", str(paths.ROOT / "bench" / "mpi_count.c")], cwd=folder, check=True)
+        subprocess.run([compiler, "-O1", "-shared", "-fPIC", "-o", "count.so",
+                        str(paths.ROOT / "bench" / "mpi_count.c")], cwd=folder, check=True)
         for k, text in enumerate(texts):
             (folder / f"in.{k}").write_text(text)
-        command = [*launch.mpirun(ranks), "env", f"LD_PRELOAD={folder / 'count.so'}", sys.executable, str(Path(__file__).resolve()), str(len(texts))]
+        command = [*launch.mpirun(ranks), "env", f"LD_PRELOAD={folder / 'count.so'}",
+                   sys.executable, str(Path(__file__).resolve()), str(len(texts))]
         execute(command, folder)
         found = [json.loads(path.read_text()) for path in sorted(folder.glob("rank*.json"))]
     join = join or (lambda values: sum(values) / len(values))
-    return [{key: join([rank[k][key] for rank in found]) for key in found[0][k]} for k in range(len(texts))]
+    return [{key: join([rank[k][key] for rank in found]) for key in found[0][k]}
+            for k in range(len(texts))]
 
 
 def _count(number):
@@ -190,7 +210,8 @@ def _count(number):
             before = [cell.value for cell in cells]
             lmp.command(f"run {steps}")
             counts.append([cell.value - b for cell, b in zip(cells, before)])
-        found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {"ghosts": lmp.extract_global("nghost"), "particles": lmp.extract_global("nlocal"),
+        found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {
+            "ghosts": lmp.extract_global("nghost"), "particles": lmp.extract_global("nlocal"),
                       "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024})
     Path(f"rank{lmp.extract_setting('world_rank')}.json").write_text(json.dumps(found))
     lmp.finalize()

@@ -1,7 +1,9 @@
-"""A channel between an inlet and an outlet, a hundred times through. tools/cost open_ends [ranks=N] [times=100]
+"""A channel between an inlet and an outlet, a hundred times through. tools/cost open_ends [ranks=N]
+[times=100]
 
-Oil, Poiseuille's profile in, pressure out, 30 by 10 particles, as in unittest/styles/test_inlet.py: what came, what left, how many there
-were, and the pressure drop of thirds of the run. Exit status 1 if one particle is unaccounted for.
+Oil, Poiseuille's profile in, pressure out, 30 by 10 particles, as in unittest/styles/test_inlet.py:
+what came, what left, how many there were, and the pressure drop of thirds of the run. Exit status 1
+if one particle is unaccounted for.
 """
 
 import subprocess
@@ -46,9 +48,11 @@ def run(ranks, times):
     """The series of one run."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        (folder / "oil.fsi").write_text("# DATE: 2026-01-01 UNITS: si CITATION: none\noil fluid rho 1000 viscosity 100\n")
+        (folder / "oil.fsi").write_text("# DATE: 2026-01-01 UNITS: si CITATION: none\n"
+                                        "oil fluid rho 1000 viscosity 100\n")
         (folder / "in.channel").write_text(f"{DECK}run {1000 * times}\n")
-        done = subprocess.run(launch.lammps(folder / "in.channel", ranks), cwd=folder, env=launch.environment(), capture_output=True, text=True, check=False)
+        done = subprocess.run(launch.lammps(folder / "in.channel", ranks), cwd=folder,
+                              env=launch.environment(), capture_output=True, text=True, check=False)
         if done.returncode:
             raise Refusal(done.stdout[-2000:])
         return series.read(folder / "s.csv")
@@ -57,15 +61,19 @@ def run(ranks, times):
 def main(arguments):
     """tools/cost open_ends"""
     options, _ = split(arguments, ("ranks", "times"), "ranks=N or times=N", more=False)
-    ranks, times = whole("ranks", options.get("ranks", "1")), whole("times", options.get("times", "100"))
+    ranks, times = whole("ranks", options.get("ranks", "1")), whole("times",
+                                                                    options.get("times", "100"))
     if not scene.build():
         return 1
     s = run(ranks, times)
     lost = s["inside"][0] + s["came"] - s["left"] - s["inside"]
     end = s.time[-1]
-    thirds = [s["drop"][(s.time > a * end) & (s.time <= b * end)].mean() for a, b in ((0.1, 1 / 3), (1 / 3, 2 / 3), (2 / 3, 1))]
-    print(f"{times} times through on {ranks}: {s['came'][-1]:.0f} came, {s['left'][-1]:.0f} left, {abs(lost).max():.0f} lost; {s['atoms'].min():.0f} to {s['atoms'].max():.0f} "
-          f"particles with the buffers; mean pressure drop {', '.join(f'{p:.0f}' for p in thirds)} Pa in the run's thirds but for its first tenth, 3600 is Poiseuille's")
+    thirds = [s["drop"][(s.time > a * end) & (s.time <= b * end)].mean()
+              for a, b in ((0.1, 1 / 3), (1 / 3, 2 / 3), (2 / 3, 1))]
+    print(f"{times} times through on {ranks}: {s['came'][-1]:.0f} came, {s['left'][-1]:.0f} left, "
+          f"{abs(lost).max():.0f} lost; {s['atoms'].min():.0f} to {s['atoms'].max():.0f} "
+          f"particles with the buffers; mean pressure drop {', '.join(f'{p:.0f}' for p in thirds)} "
+          "Pa in the run's thirds but for its first tenth, 3600 is Poiseuille's")
     return int(lost.any())
 
 

@@ -1,5 +1,5 @@
-"""What a rank has and sends as a scene grows with the ranks: a cell of it for each, of every kind of scene.
-tools/cost ranks"""
+"""What a rank has and sends as a scene grows with the ranks: a cell of it for each, of every kind
+of scene. tools/cost ranks"""
 
 import os
 import tempfile
@@ -43,7 +43,8 @@ timestep 1e-4
 thermo 1000000
 """
 WATER = "fsi/fluid preset closed 1"
-ALONE = {"boundary": "p p p", "along": "0 0.12", "atoms": "fsi", "create": "create_atoms 1 box", "moved": "all", "pair": WATER, "mover": "all", "fsi": "",
+ALONE = {"boundary": "p p p", "along": "0 0.12", "atoms": "fsi", "create": "create_atoms 1 box",
+         "moved": "all", "pair": WATER, "mover": "all", "fsi": "",
          "coeff": "pair_coeff * * materials.fsi water water block water water", "more": ""}
 # kind: what its cell has; along which axes cells are repeated
 KINDS = {
@@ -57,7 +58,10 @@ set type 2 mol 1""", "coeff": """pair_coeff * * fsi/fluid materials.fsi water bo
 pair_coeff * * fsi/solid/tl NULL NULL body NULL NULL NULL"""}, "xy"),
     "levels": ({**ALONE, "fsi": "spacing 5 $(0.01*2^(-1/3))", "more": """region near block INF INF INF INF 0.03 0.07 units box
 fix refine water fsi/refine 6 types 1 5 region near"""}, "xy"),
-    "open ends": ({**ALONE, "boundary": "f p p", "along": "-0.08 0.2", "create": "region water block 0 0.12 INF INF INF INF units box\ncreate_atoms 1 region water", "more": "fix in water fsi/inlet xlo 0 velocity 0.1 0 0\nfix out water fsi/outlet xhi 0.12 pressure 0"}, "yz"),
+    "open ends": ({**ALONE, "boundary": "f p p", "along": "-0.08 0.2",
+                   "create": "region water block 0 0.12 INF INF INF INF units box\ncreate_atoms 1 "
+                   "region water", "more": "fix in water fsi/inlet xlo 0 velocity 0.1 0 0\n"
+                   "fix out water fsi/outlet xhi 0.12 pressure 0"}, "yz"),
     "floating blocks": ({**ALONE, "moved": "water", "mover": "water", "create": """region block block 0.03 0.07 0.03 0.07 0.03 0.07 units box
 region water block 0.03 0.07 0.03 0.07 0.03 0.07 units box side out
 create_atoms 3 region block
@@ -81,7 +85,8 @@ RANKS = (8, 27, 64)
 
 
 def grid(ranks, axes):
-    """Ranks along x, y, z: as near to each other as they can be along the axes that cells are repeated along."""
+    """Ranks along x, y, z: as near to each other as they can be along the axes that cells are
+    repeated along."""
     edge = round(ranks ** (1 / 3))
     counts = {8: (4, 2), 27: (9, 3), 64: (8, 8)}[ranks] if len(axes) == 2 else (edge,) * 3
     along = dict(zip(axes, counts))
@@ -92,25 +97,31 @@ def deck(kind, cells, ranks=None):
     """The scene of so many cells, on as many ranks or on this number."""
     settings, axes = KINDS[kind]
     copies = " ".join(map(str, grid(cells, axes)))
-    return measure.write_materials(CELL.format(**settings, replicate=f"replicate {copies}", processors=f"processors {copies}" if ranks in (None, cells) else ""))
+    return measure.write_materials(CELL.format(**settings, replicate=f"replicate {copies}",
+                                               processors=f"processors {copies}"
+                                               if ranks in (None, cells) else ""))
 
 
 STEPS = 24
 
 
 def state(kind, cells, ranks):
-    """Particles at the end of a short run, sorted so that those of two runs that are the same stand in the same places: columns x, v, rho."""
+    """Particles at the end of a short run, sorted so that those of two runs that are the same stand
+    in the same places: columns x, v, rho."""
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
         text = deck(kind, cells, ranks) + f"compute state all fsi/atom rho\nrun {STEPS}\n"
-        text += "write_dump all custom end.dump x y z vx vy vz c_state modify time yes format float %.17g\n"
+        text += ("write_dump all custom end.dump x y z vx vy vz c_state modify time yes format "
+                 "float %.17g\n")
         measure.run(Path(name), text, ranks)
         frame = dump.read(Path(name) / "end.dump")[-1]
     found = np.column_stack([frame[column] for column in frame.columns])
-    return found[np.argsort(found[:, :3] @ np.sqrt([1.0, 0.3, 0.07]))]  # by place, along no row: new IDs are given rank by rank
+    # by place, along no row: new IDs are given rank by rank
+    return found[np.argsort(found[:, :3] @ np.sqrt([1.0, 0.3, 0.07]))]
 
 
 def difference(kind, ranks):
-    """Largest difference from one rank, relative to the scene's size, the largest velocity, the density."""
+    """Largest difference from one rank, relative to the scene's size, the largest velocity, the
+    density."""
     one, many = state(kind, ranks, 1), state(kind, ranks, ranks)
     if one.shape != many.shape:
         return float("nan")
@@ -120,11 +131,14 @@ def difference(kind, ranks):
 
 def measured(kept, kind, ranks):
     """What the busiest rank has and sends in a step; how far the scene is from that of one rank."""
-    sent, = kept.get(["ranks", deck(kind, ranks), ranks], lambda: measure.messages([deck(kind, ranks)], ranks, max))
-    return {**sent, "difference": kept.get(["ranks, one rank", deck(kind, ranks), STEPS], lambda: difference(kind, ranks))}
+    sent, = kept.get(["ranks", deck(kind, ranks), ranks],
+                     lambda: measure.messages([deck(kind, ranks)], ranks, max))
+    return {**sent, "difference": kept.get(["ranks, one rank", deck(kind, ranks), STEPS],
+                                           lambda: difference(kind, ranks))}
 
 
-COLUMNS = ("scene", "ranks", "particles", "ghosts", "messages", "bytes", "collectives", "reduced", "memory", "difference")
+COLUMNS = ("scene", "ranks", "particles", "ghosts", "messages", "bytes", "collectives", "reduced",
+           "memory", "difference")
 
 
 def draw(path, rows):
@@ -132,8 +146,11 @@ def draw(path, rows):
     with plot.picture(path, 7.2, 1.9) as figure:
         axes = figure.add_subplot()
         for k, (ranks, colour) in enumerate(zip(RANKS, (plot.BLUE, plot.ORANGE, plot.GREEN))):
-            axes.bar([n + 0.25 * (k - 1) for n in range(len(KINDS))], [r["bytes"] / 1e3 for r in rows if r["ranks"] == ranks], 0.22, color=colour, label=f"{ranks} ranks")
-        axes.set_xticks(range(len(KINDS)), [kind.replace(" through", "\nthrough") for kind in KINDS], fontsize=8)
+            axes.bar([n + 0.25 * (k - 1) for n in range(len(KINDS))],
+                     [r["bytes"] / 1e3 for r in rows if r["ranks"] == ranks], 0.22, color=colour,
+                     label=f"{ranks} ranks")
+        axes.set_xticks(range(len(KINDS)),
+                        [kind.replace(" through", "\nthrough") for kind in KINDS], fontsize=8)
         axes.set(ylabel="kB of a rank and step")
         axes.grid(axis="x", visible=False)
         figure.legend(loc="upper center", ncol=3, fontsize=7.5, frameon=False)
@@ -143,13 +160,17 @@ def draw(path, rows):
 def page(rows):
     """The page's text."""
     lines = ["# Many ranks", "",
-             f"The scene grows with the ranks: each has a cell of {EDGE} particles along an edge (`tools/cost ranks`).",
+             f"The scene grows with the ranks: each has a cell of {EDGE} particles along an edge "
+             "(`tools/cost ranks`).",
              "The table is of the busiest rank. No step has new neighbor lists.",
-             f"*Reduced*: bytes of collective calls. *Difference*: the largest from one rank, after {STEPS} steps.", "", "![Bytes that a rank sends](ranks.png)", "",
+             "*Reduced*: bytes of collective calls. *Difference*: the largest from one rank, "
+             f"after {STEPS} steps.", "", "![Bytes that a rank sends](ranks.png)", "",
              "Each rank reduces 96 bytes of each floating body.",
              "An open end gathers what it makes at once, at the start its whole buffer.", "",
-             "| cell | ranks | ghosts | messages | bytes | reduced | memory | difference |", "|---|---:|---:|---:|---:|---:|---:|---:|"]
-    lines += [f"| {r['scene']} | {r['ranks']:.0f} | {r['ghosts']:,.0f} | {r['messages']:.1f} | {r['bytes']:,.0f} | {r['reduced']:,.0f} | {r['memory'] / 2**20:.0f} MB "
+             "| cell | ranks | ghosts | messages | bytes | reduced | memory | difference |",
+             "|---|---:|---:|---:|---:|---:|---:|---:|"]
+    lines += [f"| {r['scene']} | {r['ranks']:.0f} | {r['ghosts']:,.0f} | {r['messages']:.1f} | "
+              f"{r['bytes']:,.0f} | {r['reduced']:,.0f} | {r['memory'] / 2**20:.0f} MB "
               f"| {r['difference']:.0e} |" for r in rows]
     return "\n".join(lines) + "\n"
 
@@ -162,7 +183,8 @@ def main(arguments):
     for kind in KINDS:
         for ranks in RANKS:
             rows.append({"scene": kind, "ranks": ranks, **measured(job.kept, kind, ranks)})
-            say("cost: " + "; ".join(f"{rows[-1][name]:.4g} {name}" if name != "scene" else kind for name in COLUMNS))
+            say("cost: " + "; ".join(f"{rows[-1][name]:.4g} {name}" if name != "scene" else kind
+                                     for name in COLUMNS))
     draw(job.folder / "ranks.png", rows)
     job.write(COLUMNS, rows, 6, page(rows))
     return 0

@@ -1,7 +1,9 @@
-"""What a step of each variant of the solid costs next to the plain one: tools/cost solids [out=FOLDER] [turns=N]
+"""What a step of each variant of the solid costs next to the plain one: tools/cost solids
+[out=FOLDER] [turns=N]
 
-A block that vibrates, 2D and 3D, one core. Each variant is timed next to the plain one in one process, in turns, and instructions of the
-time loop are counted by callgrind, which does not depend on the machine's load. Its table is a part of the page of tools/cost effects.
+A block that vibrates, 2D and 3D, one core. Each variant is timed next to the plain one in one
+process, in turns, and instructions of the time loop are counted by callgrind, which does not depend
+on the machine's load. Its table is a part of the page of tools/cost effects.
 """
 
 import math
@@ -38,19 +40,24 @@ VARIANTS = {
     "TL, hypoelastic + plasticity": (HYPO, "plastic"),
 }
 SAME = {  # scene and effect of tools/cost effects: the variant, and over which
-    ("updated", "artificial viscosity"): ("+ artificial viscosity", PLAIN), ("updated", "artificial stress"): ("+ artificial stress", PLAIN),
-    ("updated", "corrected gradients"): ("corrected gradients", PLAIN), ("updated", "quadratic gradients"): ("quadratic gradients", PLAIN),
+    ("updated", "artificial viscosity"): ("+ artificial viscosity", PLAIN),
+        ("updated", "artificial stress"): ("+ artificial stress", PLAIN),
+    ("updated", "corrected gradients"): ("corrected gradients", PLAIN),
+        ("updated", "quadratic gradients"): ("quadratic gradients", PLAIN),
     ("updated", "plasticity"): ("+ plasticity", PLAIN),
     ("total", "artificial viscosity"): ("TL + both", "TL + hourglass control"),
-    ("total", "hourglass control"): ("TL + hourglass control", "total Lagrangian, St. Venant-Kirchhoff"),
+    ("total", "hourglass control"): ("TL + hourglass control",
+                                     "total Lagrangian, St. Venant-Kirchhoff"),
     ("total", "neo-Hookean"): ("TL, neo-Hookean", "total Lagrangian, St. Venant-Kirchhoff"),
     ("total", "damage"): ("TL + damage", "total Lagrangian, St. Venant-Kirchhoff"),
     ("total", "hypoelastic"): ("TL, hypoelastic", "total Lagrangian, St. Venant-Kirchhoff"),
-    ("total", "plasticity (hypoelastic)"): ("TL, hypoelastic + plasticity", "total Lagrangian, St. Venant-Kirchhoff")}
+    ("total", "plasticity (hypoelastic)"): ("TL, hypoelastic + plasticity",
+                                            "total Lagrangian, St. Venant-Kirchhoff")}
 FORMS = {  # comparisons of forms: the variant, and over which
     "total instead of updated Lagrangian": ("total Lagrangian, St. Venant-Kirchhoff", PLAIN),
     "the same with hourglass control, the default": ("TL + hourglass control", PLAIN),
-    "updated Lagrangian as stiff as that: quadratic gradients, hourglass control": ("quadratic + hourglass control", PLAIN)}
+    "updated Lagrangian as stiff as that: quadratic gradients, hourglass control": (
+        "quadratic + hourglass control", PLAIN)}
 SIZE = {2: (60, 50), 3: (15, 14, 14)}  # particles
 STEPS = {2: 60, 3: 12}
 
@@ -88,19 +95,24 @@ thermo_modify norm no
 
 def timed(dim, variant, turns):
     """A variant beside the plain one, as measure.Pair, after a run of each that does not count."""
-    found = measure.pair(*(f"{deck(dim, *v)}run {STEPS[dim]}" for v in (VARIANTS[PLAIN], variant)), turns + 1)
+    found = measure.pair(*(f"{deck(dim, *v)}run {STEPS[dim]}" for v in (VARIANTS[PLAIN], variant)),
+                         turns + 1)
     return replace(found, a=found.a[1:], b=found.b[1:])
 
 
 def table(dim, turns):
     """Rows of one dimension."""
-    counts = [n / math.prod(SIZE[dim]) for n in measure.instructions([deck(dim, *v) for v in VARIANTS.values()])]
+    counts = [n / math.prod(SIZE[dim])
+              for n in measure.instructions([deck(dim, *v) for v in VARIANTS.values()])]
     rows = []
     for (name, variant), count in zip(VARIANTS.items(), counts):
         pair = timed(dim, variant, turns)
-        rows.append({"dimension": dim, "variant": name, "command": " ".join(filter(None, (variant[0], variant[1] and f"({variant[1]})"))),
-                     "ns": 1e9 * min(pair.b), "ratio": pair.ratio, "spread": pair.spread, "instructions": count, "instruction_ratio": count / counts[0]})
-        say(f"{dim}D  {name:40s} {rows[-1]['ns']:7.0f} ns  {pair.ratio:5.2f} +- {pair.spread:.2f}  {count:8.0f} instructions")
+        rows.append({"dimension": dim, "variant": name, "command":
+                         " ".join(filter(None, (variant[0], variant[1] and f"({variant[1]})"))),
+                     "ns": 1e9 * min(pair.b), "ratio": pair.ratio, "spread": pair.spread,
+                     "instructions": count, "instruction_ratio": count / counts[0]})
+        say(f"{dim}D  {name:40s} {rows[-1]['ns']:7.0f} ns  {pair.ratio:5.2f} +- {pair.spread:.2f}  "
+            f"{count:8.0f} instructions")
     return rows
 
 
@@ -111,15 +123,19 @@ def ratio(rows, dim, variant, over):
 
 
 def added(rows, dim, scene, effect):
-    """Share of instructions that the same effect adds to this block; None where there is no such variant, or no rows."""
+    """Share of instructions that the same effect adds to this block; None where there is no such
+    variant, or no rows."""
     pair = SAME.get((scene, effect))
     return ratio(rows, dim, *pair) - 1.0 if pair and rows else None
 
 
 def page(rows):
     """The table for a look; the manual has it on the page of effects."""
-    lines = ["# Variants of the solid", "", "| dimension | variant | command | ns | over the plain one | instructions |", "|---|---|---|---|---|---|"]
-    lines += [f"| {r['dimension']} | {r['variant']} | `{r['command']}` | {r['ns']:.0f} | {r['ratio']:.2f} ± {r['spread']:.2f} | {r['instructions']:.0f} |" for r in rows]
+    lines = ["# Variants of the solid", "",
+             "| dimension | variant | command | ns | over the plain one | instructions |",
+             "|---|---|---|---|---|---|"]
+    lines += [f"| {r['dimension']} | {r['variant']} | `{r['command']}` | {r['ns']:.0f} | "
+              f"{r['ratio']:.2f} ± {r['spread']:.2f} | {r['instructions']:.0f} |" for r in rows]
     return "\n".join(lines) + "\n"
 
 

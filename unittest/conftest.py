@@ -1,4 +1,5 @@
-"""Lies here so that pytest, and processes that tests start, find scenes.py from the folders below."""
+"""Lies here so that pytest, and processes that tests start, find scenes.py from the folders
+below."""
 
 import os
 import shutil
@@ -7,14 +8,19 @@ import tempfile
 
 import pytest
 
-os.environ["PYTHONPATH"] = os.pathsep.join([os.path.dirname(__file__), *filter(None, [os.environ.get("PYTHONPATH")])])
-# Thousands of short runs side by side. A rank of Open MPI that waits leaves its core to others, or most of the time is spent on waiting; at its
-# start it looks for no networks and, without mpirun, starts no server; and who ends with an error gives nobody a second to think about it
-for name, value in {"mpi_yield_when_idle": "1", "pml": "ob1", "btl": "self,vader", "ess_singleton_isolated": "1", "odls_base_sigkill_timeout": "0"}.items():
+os.environ["PYTHONPATH"] = os.pathsep.join([os.path.dirname(__file__),
+                                            *filter(None, [os.environ.get("PYTHONPATH")])])
+# Thousands of short runs side by side. A rank of Open MPI that waits leaves its core to others, or
+# most of the time is spent on waiting; at its start it looks for no networks and, without mpirun,
+# starts no server; and who ends with an error gives nobody a second to think about it
+for name, value in {"mpi_yield_when_idle": "1", "pml": "ob1", "btl": "self,vader",
+                    "ess_singleton_isolated": "1", "odls_base_sigkill_timeout": "0"}.items():
     os.environ.setdefault(f"OMPI_MCA_{name}", value)
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # so do threads
-os.environ.setdefault("HWLOC_PLUGINS_PATH", os.devnull)  # Open MPI loads X11, OpenCL and XML with them, a sixth of its start
-# its folder of sessions is removed by who leaves it empty, maybe while another process begins one there: one for each worker
+# Open MPI loads X11, OpenCL and XML with them, a sixth of its start
+os.environ.setdefault("HWLOC_PLUGINS_PATH", os.devnull)
+# its folder of sessions is removed by who leaves it empty, maybe while another process begins one
+# there: one for each worker
 os.environ["OMPI_MCA_orte_tmpdir_base"] = tempfile.mkdtemp(prefix="fsi_mpi_")
 
 
@@ -23,8 +29,10 @@ def pytest_unconfigure():
 
 
 def pytest_addoption(parser):
-    parser.addoption("--pairs-seed", type=int, default=0, help="draws other scenes for unittest/pairs")
-    parser.addoption("--last-case", action="store_true", help="runs only the last case of each test with parameters")
+    parser.addoption("--pairs-seed", type=int, default=0,
+                     help="draws other scenes for unittest/pairs")
+    parser.addoption("--last-case", action="store_true",
+                     help="runs only the last case of each test with parameters")
 
 
 def pytest_configure(config):
@@ -40,7 +48,8 @@ def hangs(*_):
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_protocol():
-    """A test that hangs, as LAMMPS does on two ranks whose input script is missing, fails instead of all tests."""
+    """A test that hangs, as LAMMPS does on two ranks whose input script is missing, fails instead
+    of all tests."""
     signal.signal(signal.SIGALRM, hangs)
     signal.alarm(LONGEST)
     yield
@@ -49,10 +58,12 @@ def pytest_runtest_protocol():
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """Tests that share what a fixture of their file has run, or a folder, stay together (pytest-xdist, --dist loadgroup); others go where a core is free."""
+    """Tests that share what a fixture of their file has run, or a folder, stay together
+    (pytest-xdist, --dist loadgroup); others go where a core is free."""
     if config.getoption("--last-case"):
         items[:] = {(item.path, item.originalname): item for item in items}.values()
     for item in items:
         fixtures = item._fixtureinfo.name2fixturedefs.values()  # pylint: disable=protected-access
-        if item.path.parent.name in ("tools", "docs") or any(definitions[-1].scope == "module" for definitions in fixtures):
+        if item.path.parent.name in ("tools", "docs") or any(definitions[-1].scope == "module"
+                                                             for definitions in fixtures):
             item.add_marker(pytest.mark.xdist_group(item.path.name))

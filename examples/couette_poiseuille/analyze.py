@@ -26,20 +26,25 @@ def exact(flow, y, t):
     s = y / L
     n = np.arange(1, 201)[:, None]
     if flow == "couette":
-        return V * (s + (2 / (n * np.pi) * (-1.0)**n * np.sin(n * np.pi * s) * np.exp(-n**2 * np.pi**2 * t)).sum(0))
+        return V * (s + (2 / (n * np.pi) * (-1.0)**n * np.sin(n * np.pi * s)
+                         * np.exp(-n**2 * np.pi**2 * t)).sum(0))
     odd = 2 * n - 1
-    return V * (4 * s * (1 - s) - (32 / (np.pi * odd)**3 * np.sin(odd * np.pi * s) * np.exp(-odd**2 * np.pi**2 * t)).sum(0))
+    return V * (4 * s * (1 - s) - (32 / (np.pi * odd)**3 * np.sin(odd * np.pi * s)
+                                   * np.exp(-odd**2 * np.pi**2 * t)).sum(0))
 
 
 def error(flow, frame):
     """RMS of the error over the particles, in units of V"""
-    return float(np.sqrt(np.mean((frame["vx"] - exact(flow, frame["y"], frame.time * NU / L**2))**2))) / V
+    return float(
+        np.sqrt(np.mean((frame["vx"] - exact(flow, frame["y"], frame.time * NU / L**2))**2))) / V
 
 
 def frames(folder):
     """Frames at the published instants, and the last one"""
     found = dump.read(Path(folder) / "particles.dump")
-    return dump.nearest(found, [t * L**2 / NU for t in TIMES if t <= found[-1].time * NU / L**2 + 1e-9], found[-1].time) + [found[-1]]
+    return dump.nearest(found,
+                        [t * L**2 / NU for t in TIMES if t <= found[-1].time * NU / L**2 + 1e-9],
+                        found[-1].time) + [found[-1]]
 
 
 def picture(path, flow, found):
@@ -81,14 +86,16 @@ def study(folder, cases):
         if name == "poiseuille_20":
             picture(folder / "poiseuille.png", flow, frames(path))
     curves = []
-    for kind, colour in zip(("couette", "poiseuille", "particle_poiseuille", "solid_poiseuille"), COLOURS):
+    for kind, colour in zip(("couette", "poiseuille", "particle_poiseuille", "solid_poiseuille"),
+                            COLOURS):
         n = sorted(int(m[1]) for name in cases if (m := re.fullmatch(kind + r"_(\d+)", name)))
         if n == [10, 20, 40]:
             e = [starts[f"{kind}_{k}"] for k in n]
             summary.add(f"order_{kind}", np.log2((e[0] - e[1]) / (e[1] - e[2])))
             curves.append((n, e, kind.replace("_", ", "), colour))
     if curves:
-        plot.lines(folder / "error.png", "particles between the plates", "RMS error / V", curves, log_scale="xy")
+        plot.lines(folder / "error.png", "particles between the plates", "RMS error / V", curves,
+                   log_scale="xy")
     return summary.write()
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of the flow around a cylinder in a channel.   usage: analyze.py FOLDER
 
-main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases) compares runs.
+main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases)
+compares runs.
 """
 
 import sys
@@ -32,19 +33,22 @@ def forces(folder):
 
 
 def coefficients(folder):
-    """Means of drag and lift over the last quarter of the run, and their scatter (standard deviation)"""
+    """Means of drag and lift over the last quarter of the run, and their scatter (standard
+    deviation)"""
     _, time, *both = forces(folder)
     drag, lift = (values[time >= 0.75 * time[-1]] for values in both)
     return drag.mean(), lift.mean(), drag.std(), lift.std()
 
 
 def vortices(folder):
-    """(largest drag, largest lift, Strouhal number) of the harmonics of the last five periods; the frequency is that of the lift's
-    second half. Sound, whose frequencies are others, does not count."""
+    """(largest drag, largest lift, Strouhal number) of the harmonics of the last five periods; the
+    frequency is that of the lift's second half. Sound, whose frequencies are others, does not
+    count."""
     speed, time, drag, lift = forces(folder)
     late = time >= 0.5 * time[-1]
     rate = series.frequency(time[late], series.smooth(time, lift, 0.5 * DIAMETER / speed)[late])
-    return *(sum(series.swing(time, values, rate)) for values in (drag, lift)), rate * DIAMETER / speed
+    return *(sum(series.swing(time, values, rate))
+             for values in (drag, lift)), rate * DIAMETER / speed
 
 
 def smoothed(time, values, speed):
@@ -67,7 +71,8 @@ def curve(folder):
 def named(case):
     """What a case of Re = 100 is called in the picture."""
     across, _, around = case.removeprefix("re_100_").partition("_to_")
-    return f"{across} per diameter" + (f", {around} around the cylinder" if around else "") if case.startswith("re_100_") else case
+    return f"{across} per diameter" + (f", {around} around the cylinder" if around
+                                       else "") if case.startswith("re_100_") else case
 
 
 def is_steady(folder):
@@ -84,7 +89,9 @@ def add(summary, folder, suffix="", finest=False):
         summary.add(f"drag_scatter{suffix}", scatter)
         summary.add(f"lift_scatter{suffix}", lift_scatter)
     else:
-        for name, value, reference, target in zip(("drag_max", "lift_max", "strouhal"), vortices(folder), (DRAG_MAX, LIFT_MAX, STROUHAL), (0.015, 0.03, 0.01)):
+        for name, value, reference, target in zip(("drag_max", "lift_max", "strouhal"),
+                                                  vortices(folder), (DRAG_MAX, LIFT_MAX, STROUHAL),
+                                                  (0.015, 0.03, 0.01)):
             summary.add(name + suffix, value, "", reference, UNSTEADY, target if finest else None)
 
 
@@ -92,7 +99,9 @@ def draw(folder, cases):
     """lift.png of flows with vortices, the finest of them."""
     curves = [(*curve(path), named(label)) for label, path in cases.items() if not is_steady(path)]
     if curves:
-        plot.lines(folder / "lift.png", "t U/D from a rise on, last periods", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves[-len(COLOURS):], COLOURS)],
+        plot.lines(folder / "lift.png", "t U/D from a rise on, last periods",
+                   "lift coefficient, means of 0.2 D/U",
+                   [(*c, colour) for c, colour in zip(curves[-len(COLOURS):], COLOURS)],
                    levels=[(LIFT_MAX, "Schaefer and Turek, largest"), (-LIFT_MAX, "")])
 
 
@@ -104,7 +113,8 @@ def main(folder):
     draw(folder, {"SPH": folder})
     last = dump.read(folder / "particles.dump")[-1]
     last = last.of_types(1, 3, 4, 5)
-    plot.clouds(folder / "speed.png", [(f"t = {last.time:.1f} s", last["x"], last["y"], np.hypot(last["vx"], last["vy"]))],
+    plot.clouds(folder / "speed.png", [(f"t = {last.time:.1f} s", last["x"], last["y"],
+                                        np.hypot(last["vx"], last["vy"]))],
                 summary.log.values["dx"], ((-0.3, 1.0), (0, 0.41)), "speed [m/s]", panel_width=8.0)
     return summary.write()
 
@@ -113,7 +123,8 @@ def study(folder, cases):
     """Figures of all cases; the lift of those with vortices in one picture."""
     folder = Path(folder)
     summary = Summary(folder)
-    finest = {is_steady(path): name for name, path in cases.items()}  # they are in the order of resolution
+    # they are in the order of resolution
+    finest = {is_steady(path): name for name, path in cases.items()}
     for name, path in cases.items():
         add(summary, path, f"_{name}", name in finest.values())
     draw(folder, cases)

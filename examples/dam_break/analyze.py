@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Figures and pictures of the dam break.   usage: analyze.py FOLDER
 
-Reads history.csv, particles.dump and log.lammps in FOLDER, which tools/run makes; writes summary.json, front.png,
-gauge.png (classical case) and snapshots.png there. What a run is judged by follows from its geometry.
+Reads history.csv, particles.dump and log.lammps in FOLDER, which tools/run makes; writes
+summary.json, front.png, gauge.png (classical case) and snapshots.png there. What a run is judged by
+follows from its geometry.
 """
 
 import sys
@@ -22,7 +23,8 @@ UNTIL = 2.5  # fronts are compared until t sqrt(2g/L) = 2.5, or until the wall i
 PLATEAU = (3.0, 5.0)  # t sqrt(g/H): between the first impact and the return of the run-up
 SNAPSHOT_TIMES = (0.0, 1.5, 2.4, 3.0, 4.0, 5.0, 5.7, 6.3, 7.0)  # t sqrt(g/H)
 CODE = "code, TrixiParticles WCSPH, H/dx = 400"
-FRONT_TARGET, PLATEAU_TARGET = {"code": 0.025, "experiment": 0.05}, 0.15  # of front and plateau, with 80 particles over the height
+# of front and plateau, with 80 particles over the height
+FRONT_TARGET, PLATEAU_TARGET = {"code": 0.025, "experiment": 0.05}, 0.15
 MPS = "code, Koshizuka & Oka 1996"
 BUCHNER = "experiment, Buchner 2002"
 MEASURED = {1: ("martin_moyce_57mm", "Martin & Moyce 1952, L = 57 mm", plot.ORANGE),
@@ -38,7 +40,8 @@ class Run:
 
     def __init__(self, folder):
         values = log.read(folder / "log.lammps").values
-        self.dx, self.H, self.L, self.tank, self.g = (values[k] for k in ("dx", "H", "width", "length", "g"))
+        self.dx, self.H, self.L, self.tank, self.g = (values[k]
+                                                      for k in ("dx", "H", "width", "length", "g"))
         self.resolution = round(self.H / self.dx)
         history = series.read(folder / "history.csv")
         self.t_front = history.time * np.sqrt(2.0 * self.g / self.L)
@@ -48,7 +51,8 @@ class Run:
 
     @property
     def classical(self):
-        return abs(self.L - 2.0 * self.H) < 0.5 * self.dx and abs(self.tank - 5.366 * self.H) < self.dx
+        return abs(self.L - 2.0 * self.H) < 0.5 * self.dx and abs(self.tank - 5.366
+                                                                  * self.H) < self.dx
 
     @property
     def tall(self):
@@ -95,34 +99,44 @@ def tall_reference(number):
 
 
 def add_classical(summary, run, suffix=""):
-    """Figures of the column 2H x H: front against a converged code, wall pressure against the experiment."""
-    code, measured = (series.read(HERE / f"{name}.csv") for name in ("front_code", "gauge_experiment"))
+    """Figures of the column 2H x H: front against a converged code, wall pressure against the
+    experiment."""
+    code, measured = (series.read(HERE / f"{name}.csv")
+                      for name in ("front_code", "gauge_experiment"))
     deviation = run.deviation(code.time, code["wcsph"])
-    summary.add(f"front_error_code{suffix}", largest(deviation), "", 0.0, CODE, FRONT_TARGET["code"] if suffix == "_80" else None)
-    summary.add(f"front_error_code_rms{suffix}", float(np.sqrt(np.mean(deviation**2))), "", 0.0, CODE)
+    summary.add(f"front_error_code{suffix}", largest(deviation), "", 0.0, CODE, FRONT_TARGET["code"]
+                if suffix == "_80" else None)
+    summary.add(f"front_error_code_rms{suffix}", float(np.sqrt(np.mean(deviation**2))), "", 0.0,
+                CODE)
     summary.add(f"pressure_plateau{suffix}", plateau(run.t, run.gauge), "rho g H",
-                plateau(measured.time, measured["pressure"]), BUCHNER, PLATEAU_TARGET if suffix == "_80" else None)
+                plateau(measured.time, measured["pressure"]), BUCHNER,
+                PLATEAU_TARGET if suffix == "_80" else None)
 
 
 def add_tall(summary, run):
-    """Figures of the column L x 2L: front against the experiments, as they are and delayed, and against a code."""
+    """Figures of the column L x 2L: front against the experiments, as they are and delayed, and
+    against a code."""
     for number, (name, label, _) in MEASURED.items():
         times, fronts = tall_reference(number)
         lag = run.lag(times, fronts)
         source = f"experiment, {label}"
-        summary.add(f"front_error_experiment_{name}", largest(run.deviation(times, fronts)), "", 0.0, source,
+        summary.add(f"front_error_experiment_{name}", largest(run.deviation(times, fronts)), "",
+                    0.0, source,
                     FRONT_TARGET["experiment"])
         summary.add(f"front_lag_{name}", float(lag), "sqrt(L/2g)", 0.0, source)
-        summary.add(f"front_error_lagged_{name}", largest(run.deviation(times, fronts, lag)), "", 0.0, source)
+        summary.add(f"front_error_lagged_{name}", largest(run.deviation(times, fronts, lag)), "",
+                    0.0, source)
     summary.add("front_error_mps", largest(run.deviation(*tall_reference(CODE_SET))), "", 0.0, MPS)
 
 
 def plot_classical(folder, run):
     """Front and wall pressure."""
-    code, measured = (series.read(HERE / f"{name}.csv") for name in ("front_code", "gauge_experiment"))
+    code, measured = (series.read(HERE / f"{name}.csv")
+                      for name in ("front_code", "gauge_experiment"))
     label = f"H/dx = {run.resolution}"
     shown = run.t_front <= UNTIL
-    plot.lines(folder / "front.png", TIME_LABEL, FRONT_LABEL, [(run.t_front[shown], run.front[shown], label, plot.BLUE)],
+    plot.lines(folder / "front.png", TIME_LABEL, FRONT_LABEL,
+               [(run.t_front[shown], run.front[shown], label, plot.BLUE)],
                [(code.time, code["wcsph"], CODE, plot.ORANGE)])
     shown = run.t > 2.0
     if shown.any():
@@ -137,7 +151,8 @@ def plot_tall(folder, run):
     plot.lines(folder / "front.png", TIME_LABEL, FRONT_LABEL,
                [(run.t_front[shown], run.front[shown], f"H/dx = {run.resolution}", plot.BLUE),
                 (*tall_reference(CODE_SET), f"{MPS} (MPS)", "#999999")],
-               [(*tall_reference(number), label, colour) for number, (_, label, colour) in MEASURED.items()])
+               [(*tall_reference(number), label, colour)
+                for number, (_, label, colour) in MEASURED.items()])
 
 
 def main(folder):
@@ -161,7 +176,8 @@ def main(folder):
     summary.add("particles_leaked", leaks.count(summary.log))
 
     times = [time * np.sqrt(run.H / run.g) for time in SNAPSHOT_TIMES if time <= run.t[-1] + 0.1]
-    plot.snapshots(folder / "snapshots.png", dump.nearest(frames, times, tolerance=0.1 * np.sqrt(run.H / run.g)), run.dx,
+    plot.snapshots(folder / "snapshots.png",
+                   dump.nearest(frames, times, tolerance=0.1 * np.sqrt(run.H / run.g)), run.dx,
                    limits=((0.0, run.tank), (0.0, 1.3 * max(run.H, 0.3 * run.tank))))
     return summary.write()
 
@@ -171,7 +187,8 @@ def study(folder, cases):
     summary = Summary(Path(folder))
     runs = {name: Run(Path(path)) for name, path in cases.items()}
 
-    best = sorted((run for name, run in runs.items() if name.startswith("best")), key=lambda run: run.resolution)
+    best = sorted((run for name, run in runs.items() if name.startswith("best")),
+                  key=lambda run: run.resolution)
     for run in {run.resolution: run for run in best}.values():
         add_classical(summary, run, f"_{run.resolution}")
 
@@ -179,7 +196,8 @@ def study(folder, cases):
         add_tall(summary, runs["experiment"])
     if "best_40" in runs and "best_40_serial" in runs:
         serial, parallel = runs["best_40_serial"], runs["best_40"]
-        summary.add("front_difference_ranks", largest(parallel.deviation(serial.t_front, serial.front)), "", 0.0,
+        summary.add("front_difference_ranks",
+                    largest(parallel.deviation(serial.t_front, serial.front)), "", 0.0,
                     "2 ranks against 1, H/dx = 40")
 
     if "paper_classical" in runs:
@@ -188,7 +206,8 @@ def study(folder, cases):
         ours = runs["wide"]
         for name in ("paper", "paper_H"):  # p0 = 17.4 rho g h and 17.4 rho g H
             if name in runs:
-                summary.add(f"front_difference_{name}", largest(runs[name].deviation(ours.t_front, ours.front)), "", 0.0,
+                summary.add(f"front_difference_{name}",
+                            largest(runs[name].deviation(ours.t_front, ours.front)), "", 0.0,
                             "the recommended scheme in the same geometry")
     return summary.write()
 

@@ -27,7 +27,8 @@ def main(folder):
     for frame in frames:
         frame.columns["speed"] = np.hypot(frame["vx"], frame["vy"])
     shown = dump.nearest(frames, SHOWN, 0.003) or frames[-1:]  # of a run that ends before
-    plot.snapshots(Path(folder) / "snapshots.png", shown, spacing(frames[0]), limits=((-0.25, 0.25), (0.0, 0.13)), colour="speed", columns=2,
+    plot.snapshots(Path(folder) / "snapshots.png", shown, spacing(frames[0]),
+                   limits=((-0.25, 0.25), (0.0, 0.13)), colour="speed", columns=2,
                    panel_width=3.4, labels=None, night=True)
     summary.write()
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of the elliptical drop.   usage: analyze.py FOLDER
 
-main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases) compares runs.
+main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases)
+compares runs.
 """
 
 import sys
@@ -20,7 +21,8 @@ LABELS = {"best": "shifting", "coarse": "shifting, dx doubled", "plain": "no shi
 
 
 def exact(times, rate):
-    """Semi-axes (a, b) at `times`: da/dt = -A a, db/dt = A b, dA/dt = A^2 (a^2 - b^2)/(a^2 + b^2), by Runge-Kutta."""
+    """Semi-axes (a, b) at `times`: da/dt = -A a, db/dt = A b, dA/dt = A^2 (a^2 - b^2)/(a^2 + b^2),
+    by Runge-Kutta."""
     def slope(y):
         A, a, b = y
         return np.array([A * A * (a * a - b * b) / (a * a + b * b), -a * A, b * A])
@@ -42,7 +44,8 @@ def exact(times, rate):
 
 def figures(folder):
     """{name: (value, unit, reference, source)} of a run, and its series and exact semi-axes."""
-    values, table = log.read(Path(folder) / "log.lammps").values, series.read(Path(folder) / "series.csv")
+    values, table = log.read(Path(folder) / "log.lammps").values, series.read(
+        Path(folder) / "series.csv")
     a, b = exact(table.time, values["rate"])
     last = dump.read(Path(folder) / "particles.dump")[-1]
     found = {
@@ -50,7 +53,8 @@ def figures(folder):
         "semi_axis_a": (float(table["a"][-1]), "m", float(a[-1]), EXACT),
         "b_error_worst": (np.abs(table["b"] / b - 1.0).max(), "", None, None),
         "kinetic_energy_drift": (table["ke"][-1] / table["ke"][0] - 1.0, "", None, None),
-        "min_pair_distance": (min_pair_distance(last.vector("xy"), values["dx"]) / values["dx"], "dx", None, None),
+        "min_pair_distance": (min_pair_distance(last.vector("xy"), values["dx"]) / values["dx"],
+                              "dx", None, None),
     }
     return found, table, (a, b), values["dx"]
 
@@ -63,11 +67,14 @@ def main(folder):
     for name, (value, unit, reference, source) in found.items():
         summary.add(name, value, unit, reference, source)
     plot.lines(folder / "axes.png", "time [ms]", "semi-axis [m]",
-               [(1e3 * table.time, table["b"], "b, SPH", plot.BLUE), (1e3 * table.time, table["a"], "a, SPH", plot.GREY)],
-               [(1e3 * table.time[::40], y[::40], label, plot.ORANGE) for y, label in ((b, "exact"), (a, None))])
+               [(1e3 * table.time, table["b"], "b, SPH", plot.BLUE),
+                (1e3 * table.time, table["a"], "a, SPH", plot.GREY)],
+               [(1e3 * table.time[::40], y[::40], label, plot.ORANGE)
+                for y, label in ((b, "exact"), (a, None))])
     frames = dump.read(folder / "particles.dump")
     shown = dump.nearest(frames, (0.0, 0.5 * frames[-1].time, frames[-1].time), frames[-1].time)
-    plot.clouds(folder / "drop.png", [(f"t = {1e3 * f.time:.1f} ms", f["x"], f["y"], 1e-6 * f["p"]) for f in shown], spacing,
+    plot.clouds(folder / "drop.png", [(f"t = {1e3 * f.time:.1f} ms", f["x"], f["y"], 1e-6 * f["p"])
+                                      for f in shown], spacing,
                 ((-1.2, 1.2), (-2.1, 2.1)), "pressure [MPa]", (0.0, 5.0), panel_width=1.7)
     return summary.write()
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of a block in water.   usage: analyze.py FOLDER
 
-main reads block.csv, particles.dump and log.lammps of one run and writes summary.json, height.png and snapshots.png beside
-them; study compares the runs of cases.json.
+main reads block.csv, particles.dump and log.lammps of one run and writes summary.json, height.png
+and snapshots.png beside them; study compares the runs of cases.json.
 """
 
 import sys
@@ -24,18 +24,21 @@ COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY, "#2a8c57", "#8b3fa0", "#7fb2d9", "
 
 
 def water_level(water, values):
-    """Height of the free surface beside the block: the uppermost particles of columns one spacing wide, and half a spacing."""
+    """Height of the free surface beside the block: the uppermost particles of columns one spacing
+    wide, and half a spacing."""
     dx, width, length = (values[name] for name in ("dx", "width", "length"))
     column = (water["x"] / dx).astype(int)
     top = np.full(int(round(width / dx)), -np.inf)
     np.maximum.at(top, np.clip(column, 0, len(top) - 1), water["y"])
     x = (np.arange(len(top)) + 0.5) * dx
-    free = np.abs(x - 0.5 * width) > 0.5 * length + 3.0 * dx  # away from the block, whose face the surface climbs
+    # away from the block, whose face the surface climbs
+    free = np.abs(x - 0.5 * width) > 0.5 * length + 3.0 * dx
     return float(top[free & np.isfinite(top)].mean()) + 0.5 * dx
 
 
 def bottom_of(block):
-    """Height of the block's underside: of its lowest particles, and half of their distance to those above."""
+    """Height of the block's underside: of its lowest particles, and half of their distance to those
+    above."""
     heights = np.unique(np.round(block["rest"], 9))
     low, second = (block["y"][np.isclose(block["rest"], h)].mean() for h in heights[:2])
     return low - 0.5 * (second - low)
@@ -80,9 +83,11 @@ def main(folder):
     summary.add("min_pair_distance", min_pair_distance(frames[-1].vector(), dx) / dx, "dx")
 
     height = np.array(gaps) if ratio >= 1.0 else np.array(drafts)
-    plot.lines(folder / "height.png", "time [s]", "height of the underside over the floor [mm]" if ratio >= 1.0 else "draft [mm]",
+    plot.lines(folder / "height.png", "time [s]", "height of the underside over the floor [mm]"
+               if ratio >= 1.0 else "draft [mm]",
                [([f.time for f in frames], 1e3 * height, f"density ratio {ratio:g}", plot.BLUE)])
-    plot.snapshots(folder / "snapshots.png", dump.nearest(frames, (0.0, 0.3, frames[-1].time), frames[-1].time), dx, (WATER,),
+    plot.snapshots(folder / "snapshots.png",
+                   dump.nearest(frames, (0.0, 0.3, frames[-1].time), frames[-1].time), dx, (WATER,),
                    (BLOCK, FLOOR), limits=((0.0, values["width"]), (-3.0 * dx, 0.45)))
     return summary.write()
 
@@ -94,13 +99,16 @@ def study(folder, cases):
     for (name, path), colour in zip(cases.items(), COLOURS):
         values = log.read(Path(path) / "log.lammps").values
         for figure in summary.cases[name]["figures"]:
-            if figure["name"] in ("draft", "draft_error", "gap_to_floor", "fastest_fall", "particles_leaked"):
-                summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"], figure["reference"], figure["source"],
+            if figure["name"] in ("draft", "draft_error", "gap_to_floor", "fastest_fall",
+                                  "particles_leaked"):
+                summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"],
+                            figure["reference"], figure["source"],
                             figure["target"])
         block = series.read(Path(path) / "block.csv")
         coarser = values["block_dx"] / values["dx"]
         of = "" if coarser == 1.0 else f", spacing {coarser:g} times the water's"
-        curves.append((block.time, 1e3 * block["y"], f"density ratio {values['ratio']:g}{of}", colour))
+        curves.append((block.time, 1e3 * block["y"], f"density ratio {values['ratio']:g}{of}",
+                       colour))
     plot.lines(Path(folder) / "height.png", "time [s]", "height of the block's center [mm]", curves)
     return summary.write()
 

@@ -22,7 +22,8 @@ COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN)
 
 
 def ghia(reynolds):
-    """{"u": (y, u), "v": (x, v)} of the published tables, without the walls, and without the misprint of Re = 400, v(0.9063)."""
+    """{"u": (y, u), "v": (x, v)} of the published tables, without the walls, and without the
+    misprint of Re = 400, v(0.9063)."""
     found = {}
     for name in "uv":
         table = series.read(HERE / f"ghia_{name}.csv")
@@ -33,8 +34,10 @@ def ghia(reynolds):
 
 
 def mean_velocity(frames, points, dx):
-    """Mean velocity at points (n, 2): a plane fitted to the particles of all frames within 1.5 dx."""
-    x, v = (np.concatenate([np.column_stack([frame[a], frame[b]]) for frame in frames]) for a, b in (("x", "y"), ("vx", "vy")))
+    """Mean velocity at points (n, 2): a plane fitted to the particles of all frames within 1.5
+    dx."""
+    x, v = (np.concatenate([np.column_stack([frame[a], frame[b]]) for frame in frames])
+            for a, b in (("x", "y"), ("vx", "vy")))
     found = []
     for point in points:
         offset = (x - point) / (1.5 * dx)
@@ -46,7 +49,8 @@ def mean_velocity(frames, points, dx):
 
 
 def lines(folder, reynolds, dx):
-    """u along x = 1/2 and v along y = 1/2 at the published points, means over the last quarter of the run; both as curves; the frames."""
+    """u along x = 1/2 and v along y = 1/2 at the published points, means over the last quarter of
+    the run; both as curves; the frames."""
     frames = dump.read(Path(folder) / "particles.dump")
     frames = [frame for frame in frames if frame.time > 0.75 * frames[-1].time]
     points = ghia(reynolds)
@@ -60,7 +64,8 @@ def lines(folder, reynolds, dx):
 
 
 def measure(folder):
-    """(Reynolds number, values of the log, lines, curves, RMS distance from the published tables, frames)."""
+    """(Reynolds number, values of the log, lines, curves, RMS distance from the published tables,
+    frames)."""
     values = log.read(Path(folder) / "log.lammps").values
     reynolds = round(values["Re"])
     found, curves, frames = lines(folder, reynolds, values["dx"])
@@ -69,18 +74,22 @@ def measure(folder):
 
 
 def picture(path, runs):
-    """Both lines. runs: [(Reynolds number, curves, label, colour)]; published points of each Reynolds number."""
+    """Both lines. runs: [(Reynolds number, curves, label, colour)]; published points of each
+    Reynolds number."""
     with plot.picture(path, 7.6, 3.6) as figure:
-        for axes, name, labels in zip(figure.subplots(1, 2), "uv", (("u/U at x = L/2", "y/L"), ("x/L", "v/U at y = L/2"))):
+        for axes, name, labels in zip(figure.subplots(1, 2), "uv",
+                                      (("u/U at x = L/2", "y/L"), ("x/L", "v/U at y = L/2"))):
             for reynolds in {run[0]: None for run in runs}:
                 s, values = ghia(reynolds)[name]
-                axes.plot(*((values, s) if name == "u" else (s, values)), "o", markersize=4.0, markerfacecolor="white", color=plot.GREY,
+                axes.plot(*((values, s) if name == "u" else (s, values)), "o", markersize=4.0,
+                          markerfacecolor="white", color=plot.GREY,
                           label=SOURCE if reynolds == runs[0][0] else None)
             for _, curves, label, colour in runs:
                 s, values = curves[name]
                 axes.plot(*((values, s) if name == "u" else (s, values)), color=colour, label=label)
             axes.set(xlabel=labels[0], ylabel=labels[1])
-        figure.legend(*axes.get_legend_handles_labels(), ncols=4, loc="upper center", fontsize="small")
+        figure.legend(*axes.get_legend_handles_labels(), ncols=4, loc="upper center",
+                      fontsize="small")
         figure.tight_layout(rect=(0, 0, 1, 0.93))
 
 
@@ -93,10 +102,13 @@ def main(folder):
     summary.add("rms", rms, "U", target=TARGETS[reynolds] if settled else None)
     low, y = ghia(reynolds)["u"]
     summary.add("u_min", found["u"].min(), "U", y.min(), SOURCE)
-    picture(folder / "lines.png", [(reynolds, curves, f"SPH, {values['n']:.0f} along a side", plot.BLUE)])
+    picture(folder / "lines.png",
+            [(reynolds, curves, f"SPH, {values['n']:.0f} along a side", plot.BLUE)])
     last = frames[-1]
-    plot.clouds(folder / "speed.png", [(f"Re = {reynolds}, t = {last.time:.0f} L/U", last["x"], last["y"], np.hypot(last["vx"], last["vy"]))],
-                values["dx"], ((0, 1), (0, 1)), "speed/U", axis_labels=("x/L", "y/L"), panel_width=4.0)
+    plot.clouds(folder / "speed.png", [(f"Re = {reynolds}, t = {last.time:.0f} L/U", last["x"],
+                                        last["y"], np.hypot(last["vx"], last["vy"]))],
+                values["dx"], ((0, 1), (0, 1)), "speed/U", axis_labels=("x/L", "y/L"),
+                panel_width=4.0)
     return summary.write()
 
 
@@ -112,8 +124,9 @@ def study(folder, cases):
             finest[reynolds] = values["n"], curves, rms
     for reynolds, (_, _, rms) in finest.items():
         summary.add(f"rms_{reynolds}", rms, "U", target=TARGETS[reynolds])
-    picture(folder / "lines.png", [(reynolds, curves, f"Re = {reynolds}, {n:.0f} along a side", colour)
-                                   for (reynolds, (n, curves, _)), colour in zip(sorted(finest.items()), COLOURS)])
+    picture(folder / "lines.png",
+            [(reynolds, curves, f"Re = {reynolds}, {n:.0f} along a side", colour)
+             for (reynolds, (n, curves, _)), colour in zip(sorted(finest.items()), COLOURS)])
     return summary.write()
 
 

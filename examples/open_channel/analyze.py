@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Figures and pictures of the flow past a cylinder between an inlet and an outlet.   usage: analyze.py FOLDER
+"""Figures and pictures of the flow past a cylinder between an inlet and an outlet.   usage:
+analyze.py FOLDER
 
-main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases) compares runs.
+main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases)
+compares runs.
 """
 
 import sys
@@ -16,13 +18,15 @@ from fsi.summary import Summary  # noqa: E402
 
 SOURCE = "Schaefer & Turek 1996"
 DRAG_20 = 5.58    # 2D-1: 5.57 to 5.59
-DRAG_100, LIFT_100, STROUHAL = 3.23, 1.0, 0.30   # 2D-2: largest cd 3.22 to 3.24 (it swings by 2 %), largest cl 0.99 to 1.01, St 0.295 to 0.305
+# 2D-2: largest cd 3.22 to 3.24 (it swings by 2 %), largest cl 0.99 to 1.01, St 0.295 to 0.305
+DRAG_100, LIFT_100, STROUHAL = 3.23, 1.0, 0.30
 D = 0.1
 COLOURS = (plot.BLUE, plot.ORANGE, "#3a923a", plot.GREY)
 
 
 def swing(time, lift, U):
-    """Amplitude and frequency of the sine that fits best, between a third and twice the frequency of the reference"""
+    """Amplitude and frequency of the sine that fits best, between a third and twice the frequency
+    of the reference"""
     lift = lift - lift.mean()
     best = (0.0, 0.0)
     for f in np.arange(STROUHAL / 3, 2 * STROUHAL, 0.002) * U / D:
@@ -43,7 +47,8 @@ def figures(folder):
     found["strouhal"] = frequency * D / U
     found["in"], found["out"] = s["in"][late].mean(), s["out"][late].mean()
     found["particles"] = s["fluid"][late].mean() / s["fluid"][0]
-    found["lost"] = s["fluid"][-1] - s["fluid"][0] - (s["came"][-1] - s["came"][0]) + s["left"][-1] - s["left"][0]
+    found["lost"] = s["fluid"][-1] - s["fluid"][0] - (s["came"][-1]
+                                                      - s["came"][0]) + s["left"][-1] - s["left"][0]
     return found, s, scale, window
 
 
@@ -60,13 +65,15 @@ def main(folder):
     for name in ("in", "out", "particles", "lost"):
         summary.add(name, found[name])
     plot.lines(folder / "forces.png", "t [s]", "coefficient", [
-        (s.time, series.smooth(s.time, scale * s[name], window), name, colour) for name, colour in zip(("drag", "lift"), COLOURS)])
+        (s.time, series.smooth(s.time, scale * s[name], window), name, colour)
+        for name, colour in zip(("drag", "lift"), COLOURS)])
     last = dump.read(folder / "particles.dump")[-1]
     last = last.of_types(1)
     dx = float(summary.log.values["dx"])
     spin = geometry.vorticity(*(last[name] for name in ("x", "y", "vx", "vy")), 2.5 * dx)
     plot.clouds(folder / "vorticity.png", [(f"t = {last.time:.2f} s", last["x"], last["y"], spin)],
-                dx, ((last["x"].min(), last["x"].max()), (0, 0.41)), "vorticity [1/s]", (-40.0, 40.0), panel_width=8.0, colours="RdBu_r")
+                dx, ((last["x"].min(), last["x"].max()), (0, 0.41)), "vorticity [1/s]",
+                (-40.0, 40.0), panel_width=8.0, colours="RdBu_r")
     return summary.write()
 
 
@@ -77,13 +84,16 @@ def study(folder, cases):
     curves = []
     for (name, path), colour in zip(cases.items(), COLOURS):
         found, s, scale, window = figures(path)
-        summary.add(f"drag_{name}", found["drag"], "", DRAG_20 if "20" in name else DRAG_100, SOURCE)
-        summary.add(f"lift_amplitude_{name}", found["lift"], "", None if "20" in name else LIFT_100, SOURCE)
+        summary.add(f"drag_{name}", found["drag"], "", DRAG_20 if "20" in name else DRAG_100,
+                    SOURCE)
+        summary.add(f"lift_amplitude_{name}", found["lift"], "", None if "20" in name else LIFT_100,
+                    SOURCE)
         if "20" not in name:
             summary.add(f"strouhal_{name}", found["strouhal"], "", STROUHAL, SOURCE)
         for key in ("in", "out", "particles", "lost"):
             summary.add(f"{key}_{name}", found[key])
-        curves.append((s.time, series.smooth(s.time, scale * s["lift"], window), name.replace("_", " "), colour))
+        curves.append((s.time, series.smooth(s.time, scale * s["lift"], window),
+                       name.replace("_", " "), colour))
     plot.lines(folder / "lift.png", "t [s]", "lift coefficient", curves)
     return summary.write()
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of an elastic plate in cross-flow.   usage: analyze.py FOLDER
 
-main reads series.csv, particles.dump and log.lammps of one run; study compares the runs of cases.json.
+main reads series.csv, particles.dump and log.lammps of one run; study compares the runs of
+cases.json.
 """
 
 import sys
@@ -24,18 +25,21 @@ COLORS = {2: plot.GREY, 4: plot.ORANGE, 6: plot.BLUE}
 def read(folder):
     """(values of the log, time, displacements of A [mm], force on half of the plate [N])"""
     s = series.read(Path(folder) / "series.csv")
-    return log.read(Path(folder) / "log.lammps").values, s.time, {name: 1e3 * s[name] for name in ("ux", "uy", "uz")}, s["fx"]
+    return log.read(Path(folder) / "log.lammps").values, s.time, {
+        name: 1e3 * s[name] for name in ("ux", "uy", "uz")}, s["fx"]
 
 
 def add(summary, folder, suffix="", judged=True):
     """The figures of one run; returns what it read."""
     values, time, u, force = read(folder)
     late = time >= time[-1] - MEAN
-    found = {"ux": u["ux"][late].mean(), "uy": u["uy"][late].mean(), "uz_twice": 2 * u["uz"][late].mean()}
+    found = {"ux": u["ux"][late].mean(), "uy": u["uy"][late].mean(),
+             "uz_twice": 2 * u["uz"][late].mean()}
     for name, value in found.items():
         reference, target = REFERENCE[name]
         summary.add(name + suffix, value, "mm", reference, SOURCE, target if judged else None)
-    summary.add("ux_drift" + suffix, (u["ux"][late][-1] - u["ux"][late][0]) / found["ux"], "of it, in the last second")
+    summary.add("ux_drift" + suffix, (u["ux"][late][-1] - u["ux"][late][0]) / found["ux"],
+                "of it, in the last second")
     summary.add("force" + suffix, force[late].mean(), "N, on one half")
     return values, time, u, force
 
@@ -45,7 +49,8 @@ def main(folder):
     folder = Path(folder)
     summary = Summary(folder)
     values, time, u, _ = add(summary, folder)
-    plot.lines(folder / "displacement.png", "t [s]", "displacement of A [mm]", [(time, u["ux"], "along the stream", plot.BLUE), (time, u["uy"], "upward", plot.ORANGE)],
+    plot.lines(folder / "displacement.png", "t [s]", "displacement of A [mm]", [
+        (time, u["ux"], "along the stream", plot.BLUE), (time, u["uy"], "upward", plot.ORANGE)],
                levels=[(REFERENCE["ux"][0], SOURCE), (REFERENCE["uy"][0], "")])
     picture(folder / "snapshots.png", folder, values)
     return summary.write()
@@ -57,9 +62,12 @@ def picture(path, folder, values):
     solid = last["type"] > 1
     cut = (np.abs(last["z"]) < dx) & (last["y"] > -0.1)
     there = cut & ~solid
-    plot.clouds(path, [(f"t = {last.time:.0f} s", np.append(last["x"][there], last["x"][cut & solid]), np.append(last["y"][there], last["y"][cut & solid]),
+    plot.clouds(path, [(f"t = {last.time:.0f} s",
+                        np.append(last["x"][there], last["x"][cut & solid]),
+                        np.append(last["y"][there], last["y"][cut & solid]),
                         np.append(last["vx"][there], np.zeros((cut & solid).sum())))],
-                dx, ((0.0, 1.5), (-0.05, 0.4)), "velocity along the stream [m/s]", panel_width=6.5, colours="RdBu_r", extent=(-0.5, 0.5))
+                dx, ((0.0, 1.5), (-0.05, 0.4)), "velocity along the stream [m/s]", panel_width=6.5,
+                colours="RdBu_r", extent=(-0.5, 0.5))
 
 
 def study(folder, cases):
@@ -77,7 +85,9 @@ def study(folder, cases):
         for time, value, label, color in curves:
             axes.plot(time, value, color=color, linewidth=1.1, label=label)
         for name, style in (("ux", "--"), ("uy", ":")):
-            axes.axhline(REFERENCE[name][0], color="black", linestyle=style, linewidth=1.0, label=f"Tukovic et al. 2018, {'along the stream' if name == 'ux' else 'upward'}")
+            axes.axhline(
+                REFERENCE[name][0], color="black", linestyle=style, linewidth=1.0,
+                label=f"Tukovic et al. 2018, {'along the stream' if name == 'ux' else 'upward'}")
         axes.set(xlabel="t [s]", ylabel="displacement of A [mm]")
         axes.legend(fontsize=7)
         figure.tight_layout()

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Damping of the oscillating plate against artificial viscosity.   usage: analyze.py FOLDER
 
-main() is that of examples/oscillating_plate, whose deck this scene runs; study() makes the table and the pictures.
+main() is that of examples/oscillating_plate, whose deck this scene runs; study() makes the table
+and the pictures.
 """
 
 import sys
@@ -16,18 +17,22 @@ from fsi.summary import Summary  # noqa: E402
 plate = scene.analysis("oscillating_plate")
 main = plate.main
 
-COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47", "quintic_1.0": "#d1611a",
+COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47",
+           "quintic_1.0": "#d1611a",
            "quintic_1.3": "#efa36b", "corrected_1.3": "#2a8c57", "nostress_1.3": "#8a4fa0",
            "coarse_1.3": "#c98bd8", "tl_1.5": plot.GREY}
 RECIPE = [kind for kind in COLOURS if kind.startswith(("cubic", "quintic"))]
-OTHER = {"cubic_1.3": "classic, cubic, 1.3", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress",
+OTHER = {"cubic_1.3": "classic, cubic, 1.3", "corrected_1.3": "corrected gradient",
+         "nostress_1.3": "no artificial stress",
          "coarse_1.3": "the same, 5 particles thick", "tl_1.5": "total Lagrangian"}
-COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder", "neighbour_distance_deviation", "stress_zigzag",
+COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder",
+           "neighbour_distance_deviation", "stress_zigzag",
            "mechanical_energy", "taken_by_viscosity", "taken_by_stress")
 
 
 def study(folder, cases):
-    """A5/A1, disorder and where the energy went, by series and artificial viscosity: cases are called SERIES_aALPHA."""
+    """A5/A1, disorder and where the energy went, by series and artificial viscosity: cases are
+    called SERIES_aALPHA."""
     folder = Path(folder)
     summary = Summary(folder)
     table = {}
@@ -39,7 +44,8 @@ def study(folder, cases):
         for kind, rows in table.items():
             rows.sort(key=lambda row: row[0])
             for alpha, values in rows:
-                file.write(f"{kind},{alpha:g}," + ",".join(_text(values.get(name)) for name in COLUMNS) + "\n")
+                file.write(f"{kind},{alpha:g},"
+                           + ",".join(_text(values.get(name)) for name in COLUMNS) + "\n")
                 summary.add(f"a5_a1_{kind}_a{alpha:g}", values.get("a5_a1"))
     picture_damping(folder / "damping.png", table)
     return summary.write()
@@ -63,7 +69,8 @@ def _alpha_axis(axes, rows):
 
 def _curves(axes, table, kinds, name, labels):
     for kind in kinds:
-        rows = [(a, v[name]) for a, v in table.get(kind, []) if v.get(name) and v.get("stopped_at") is None]
+        rows = [(a, v[name]) for a, v in table.get(kind, []) if v.get(name)
+                and v.get("stopped_at") is None]
         if rows:
             axes.plot(*zip(*rows), "o-", markersize=4, color=COLOURS[kind],
                       label=labels.get(kind, kind.replace("_", ", h/Δx = ")))
@@ -79,7 +86,8 @@ def picture_damping(path, table):
             _curves(axes, table, kinds, "a5_a1", labels)
             for k, kind in enumerate(kinds):
                 blown = [a for a, v in table.get(kind, []) if v.get("stopped_at") is not None]
-                axes.plot(blown, [0.02 + 0.03 * k] * len(blown), "x", markersize=5, color=COLOURS[kind])
+                axes.plot(blown, [0.02 + 0.03 * k] * len(blown), "x", markersize=5,
+                          color=COLOURS[kind])
             axes.plot([], [], "x", color=plot.GREY, label="blew up")
             axes.set_title(title, loc="left")
             axes.set_ylim(0.0, 1.05)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of the rolling tank.   usage: analyze.py FOLDER
 
-main reads tank.csv, particles.dump and log.lammps of one run and writes summary.json, tank.png and snapshots.png beside them; study
-collects the runs of cases.json.
+main reads tank.csv, particles.dump and log.lammps of one run and writes summary.json, tank.png and
+snapshots.png beside them; study collects the runs of cases.json.
 """
 
 import sys
@@ -29,11 +29,14 @@ def first_period(half, depth, gravity=9.81):
 
 
 def period(time, value):
-    """Of the sine with an offset that fits best; None if less than the longest period tried is there."""
+    """Of the sine with an offset that fits best; None if less than the longest period tried is
+    there."""
     periods = np.linspace(0.9, 1.6, 1401)
     if time[-1] - time[0] < periods[-1]:
         return None
-    misfit = [np.linalg.lstsq(np.column_stack([np.sin(w * time), np.cos(w * time), np.ones_like(time)]), value, rcond=None)[1][0]
+    misfit = [np.linalg.lstsq(
+        np.column_stack([np.sin(w * time), np.cos(w * time), np.ones_like(time)]), value,
+        rcond=None)[1][0]
               for w in 2.0 * np.pi / periods]
     return float(periods[int(np.argmin(misfit))])
 
@@ -51,11 +54,13 @@ def main(folder):
     for frame in frames:
         oil = frame.of_types(OIL)
         # the last picture may be a digit later than the last line
-        roll = np.radians(history.at("roll", [np.clip(frame.time, history.time[0], history.time[-1])])[0])
+        roll = np.radians(
+            history.at("roll", [np.clip(frame.time, history.time[0], history.time[-1])])[0])
         oil.columns["along"] = np.cos(roll) * oil["x"] + np.sin(roll) * oil["y"]
         oil.columns["up"] = np.cos(roll) * oil["y"] - np.sin(roll) * oil["x"]
         leaks.see(oil)
-        leaks.beyond_walls(oil, [("along", -half, -1), ("along", half, 1), ("up", 0.0, -1), ("up", height, 1)])
+        leaks.beyond_walls(oil, [("along", -half, -1), ("along", half, 1), ("up", 0.0, -1),
+                                 ("up", height, 1)])
     nearest = min_pair_distance(frames[-1].vector(), dx) / dx
 
     pulse = history["roll"][-1] == 0.0
@@ -68,18 +73,23 @@ def main(folder):
         late = history.time > REST
         found = period(history.time[late], history["x"][late])
         if found:
-            summary.add("sloshing_period", found, "s", first_period(half, values["depth"]), THEORY, target=0.02)
+            summary.add("sloshing_period", found, "s", first_period(half, values["depth"]), THEORY,
+                        target=0.02)
     summary.add("particles_leaked", leaks.count(summary.log), target=0)
     summary.add("min_pair_distance", nearest, "dx")
 
     curves = [(history.time, history["roll"], "roll of the tank [degrees]", plot.GREY)]
     if values["baffle"] > 0.0:
-        curves.append((history.time, 1e3 * history["tip"], "tip of the baffle across the tank's axis [mm]", plot.BLUE))
-    curves.append((history.time, 1e3 * history["x"], "the oil's center of mass along the tank [mm]", plot.ORANGE))
+        curves.append((history.time, 1e3 * history["tip"],
+                       "tip of the baffle across the tank's axis [mm]", plot.BLUE))
+    curves.append((history.time, 1e3 * history["x"], "the oil's center of mass along the tank [mm]",
+                   plot.ORANGE))
     plot.lines(folder / "tank.png", "time [s]", "in the frame of the tank", curves)
     limits = ((-half - 0.05, half + 0.05), (-0.04, 0.24))
     end = frames[-1].time
-    plot.snapshots(folder / "snapshots.png", dump.nearest(frames, tuple(np.linspace(0.2, 1.0, 6) * end), end), dx, (OIL,), (BAFFLE, WALL),
+    plot.snapshots(folder / "snapshots.png",
+                   dump.nearest(frames, tuple(np.linspace(0.2, 1.0, 6) * end), end), dx, (OIL,),
+                   (BAFFLE, WALL),
                    limits=limits, columns=2, panel_width=3.6)
     return summary.write()
 
@@ -90,7 +100,8 @@ def study(folder, cases):
     for name in cases:
         for figure in summary.cases[name]["figures"]:
             if figure["name"].startswith(("tip", "sloshing", "particles_leaked")):
-                summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"], figure["reference"], figure["source"], figure["target"])
+                summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"],
+                            figure["reference"], figure["source"], figure["target"])
     return summary.write()
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of a disc that settles.   usage: analyze.py FOLDER
 
-main reads disc.csv, particles.dump and log.lammps of one run; study compares the runs of cases.json.
+main reads disc.csv, particles.dump and log.lammps of one run; study compares the runs of
+cases.json.
 """
 
 import sys
@@ -29,15 +30,19 @@ def add(summary, folder, suffix, target):
     """The figures of one run"""
     s, code = series.read(Path(folder) / "disc.csv"), series.read(HERE / "code.csv")
     if s.time[-1] > EVEN[1]:
-        summary.add("terminal_speed" + suffix, 1e3 * even_speed(s), "mm/s", 1e3 * even_speed(code), SOURCE, target)
-    summary.add("speed_at_0.1_s" + suffix, -1e3 * float(s.at("v", 0.1)), "mm/s", -1e3 * float(code.at("v", 0.1)), SOURCE, target)
+        summary.add("terminal_speed" + suffix, 1e3 * even_speed(s), "mm/s", 1e3 * even_speed(code),
+                    SOURCE, target)
+    summary.add("speed_at_0.1_s" + suffix, -1e3 * float(s.at("v", 0.1)), "mm/s",
+                -1e3 * float(code.at("v", 0.1)), SOURCE, target)
 
 
 def draw(folder, cases):
-    runs = [(series.read(Path(path) / "disc.csv"), name, color) for (name, path), color in zip(cases.items(), COLORS)]
+    runs = [(series.read(Path(path) / "disc.csv"), name, color)
+            for (name, path), color in zip(cases.items(), COLORS)]
     code = series.read(HERE / "code.csv")
     plot.lines(Path(folder) / "speed.png", "time [s]", "speed of the disc [mm/s]",
-               [(s.time, -1e3 * s["v"], name if name == "SPH" else f"{name} particles per diameter", color) for s, name, color in runs],
+               [(s.time, -1e3 * s["v"], name if name == "SPH" else f"{name} particles per diameter",
+                 color) for s, name, color in runs],
                [(code.time, -1e3 * code["v"], "code, finite elements", plot.GREY)])
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of a square that sinks.   usage: analyze.py FOLDER
 
-main reads square.csv, particles.dump and log.lammps of one run; study compares the runs of cases.json.
+main reads square.csv, particles.dump and log.lammps of one run; study compares the runs of
+cases.json.
 """
 
 import sys
@@ -29,15 +30,19 @@ def add(summary, folder, suffix, target):
     s, measured = series.read(Path(folder) / "square.csv"), series.read(HERE / "experiment.csv")
     high, low = HEIGHTS
     if s["y"].min() < low:
-        summary.add("time_from_120_to_40_mm" + suffix, passed(s, low) - passed(s, high), "s", passed(measured, low) - passed(measured, high), SOURCE, target)
-        summary.add("time_to_40_mm" + suffix, passed(s, low), "s", passed(measured, low), SOURCE, target)
+        summary.add("time_from_120_to_40_mm" + suffix, passed(s, low) - passed(s, high), "s",
+                    passed(measured, low) - passed(measured, high), SOURCE, target)
+        summary.add("time_to_40_mm" + suffix, passed(s, low), "s", passed(measured, low), SOURCE,
+                    target)
 
 
 def draw(folder, cases):
-    runs = [(series.read(Path(path) / "square.csv"), name, color) for (name, path), color in zip(cases.items(), COLORS)]
+    runs = [(series.read(Path(path) / "square.csv"), name, color)
+            for (name, path), color in zip(cases.items(), COLORS)]
     measured = series.read(HERE / "experiment.csv")
     plot.lines(Path(folder) / "height.png", "time [s]", "height of the center [mm]",
-               [(s.time, 1e3 * s["y"], name if name == "SPH" else f"{name} particles along a side", color) for s, name, color in runs],
+               [(s.time, 1e3 * s["y"], name if name == "SPH" else f"{name} particles along a side",
+                 color) for s, name, color in runs],
                [(measured.time, 1e3 * measured["y"], SOURCE, plot.GREY)])
 
 

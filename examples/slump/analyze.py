@@ -17,7 +17,8 @@ from fsi.summary import RUN_FILE, Summary  # noqa: E402
 
 SIDE, YIELD, WEIGHT, M = 0.1, 50.0, 1000 * 9.81, 100.0
 B = YIELD / WEIGHT
-FRONT = (9 * SIDE**4 / (8 * B))**(1 / 3)  # of h = sqrt(2B(FRONT-x)), whose volume is that of the block; 5/2 of its mean x
+# of h = sqrt(2B(FRONT-x)), whose volume is that of the block; 5/2 of its mean x
+FRONT = (9 * SIDE**4 / (8 * B))**(1 / 3)
 ARREST = "theory, shallow layer at arrest"
 CREEP = "finite differences, shallow layer, law with m"  # lubrication()
 COLUMN = 0.02  # [m]
@@ -45,10 +46,12 @@ def rates(stress, K):
 
 
 def lubrication(K, time, dx=0.0025, largest=0.002):
-    """Spread, 5/2 of the mean x, of a shallow layer with hydrostatic pressure and no inertia: the flux of height h and slope s is the
-    integral of stress times rate over the stress from 0 to rho g h s, over (rho g s)^2. Finite volumes, implicit.
+    """Spread, 5/2 of the mean x, of a shallow layer with hydrostatic pressure and no inertia: the
+    flux of height h and slope s is the integral of stress times rate over the stress from 0 to rho
+    g h s, over (rho g s)^2. Finite volumes, implicit.
     """
-    stress = np.concatenate([np.linspace(0, 4 * YIELD, 8001), np.geomspace(4 * YIELD, 400 * YIELD, 4000)[1:]])
+    stress = np.concatenate([np.linspace(0, 4 * YIELD, 8001),
+                             np.geomspace(4 * YIELD, 400 * YIELD, 4000)[1:]])
     power = stress * rates(stress, K)
     flux = np.concatenate([[0], np.cumsum(0.5 * (power[1:] + power[:-1]) * np.diff(stress))])
     n = round(0.36 / dx)
@@ -57,7 +60,8 @@ def lubrication(K, time, dx=0.0025, largest=0.002):
 
     def conductance(h):
         slope, height = np.abs(np.diff(h)) / dx + 1e-9, 0.5 * (h[1:] + h[:-1])
-        return np.interp(WEIGHT * slope * height, stress, flux) / (WEIGHT * slope)**2 / slope / dx**2
+        return np.interp(WEIGHT * slope * height, stress,
+                         flux) / (WEIGHT * slope)**2 / slope / dx**2
 
     while now < time:
         step, new = min(dt, time - now), h
@@ -83,18 +87,23 @@ def profile(frame):
 def add(summary, folder, suffix="", judged=True):
     """The figures of one run, each with the size of its error, which has the target"""
     _, K, tend = settings(folder)
-    s, frame = series.read(Path(folder) / "slump.csv"), dump.read(Path(folder) / "particles.dump")[-1]
-    found = [("front", s["front"][-1], FRONT, ARREST), ("height_at_wall", s["height"][-1], float(arrested(0.0)), ARREST),
+    s, frame = series.read(Path(folder) / "slump.csv"), dump.read(Path(folder)
+                                                                  / "particles.dump")[-1]
+    found = [("front", s["front"][-1], FRONT, ARREST),
+             ("height_at_wall", s["height"][-1], float(arrested(0.0)), ARREST),
              ("spread", 2.5 * s["middle"][-1], FRONT, ARREST)]
     for time in (2.0, tend):
-        found.append((f"spread_{time:g}_s", 2.5 * float(s.at("middle", min(time, s.time[-1]))), lubrication(K, time), CREEP))
+        found.append((f"spread_{time:g}_s", 2.5 * float(s.at("middle", min(time, s.time[-1]))),
+                      lubrication(K, time), CREEP))
     for name, value, reference, source in found:
         summary.add(name + suffix, value, "m", reference, source)
         if judged:
-            summary.add(f"error_of_{name}{suffix}", abs(value / reference - 1), "", None, None, 0.05 if name == "front" else None)
+            summary.add(f"error_of_{name}{suffix}", abs(value / reference - 1), "", None, None,
+                        0.05 if name == "front" else None)
     x, h = profile(frame)
     error = np.mean(np.abs(h - arrested(x))[x < FRONT]) / arrested(0.0)
-    summary.add("profile_error" + suffix, error, "of the height at the wall", None, None, 0.05 if judged else None)
+    summary.add("profile_error" + suffix, error, "of the height at the wall", None, None,
+                0.05 if judged else None)
 
 
 def draw(folder, run):
@@ -105,13 +114,15 @@ def draw(folder, run):
     share = (np.log10(frame["viscosity"]) - 2.5) / 1.3
     with plot.picture(Path(folder) / "slump.png", 5.2, 1.7) as figure:
         axes = figure.add_axes((0.14, 0.27, 0.68, 0.71))
-        plot.field(axes, frame["x"], frame["y"], dx, colors(np.clip(share, 0, 1)), ((0.0, 0.3), (0.0, 0.07)))
+        plot.field(axes, frame["x"], frame["y"], dx, colors(np.clip(share, 0, 1)),
+                   ((0.0, 0.3), (0.0, 0.07)))
         x = np.linspace(0, FRONT, 300)
         axes.plot(x, arrested(x), color=plot.RED, label="theory, at arrest")
         axes.legend()
         axes.set(xlabel="x [m]", ylabel="y [m]")
         bar = plot.ScalarMappable(plot.Normalize(2.5, 3.8), colors)
-        figure.colorbar(bar, cax=figure.add_axes((0.86, 0.27, 0.02, 0.66)), label="log10 eta [Pa s]")
+        figure.colorbar(bar, cax=figure.add_axes((0.86, 0.27, 0.02, 0.66)),
+                        label="log10 eta [Pa s]")
 
 
 def main(folder):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of the spinning plate.   usage: analyze.py FOLDER
 
-main reads plate.csv, particles.dump and log.lammps of one run and writes summary.json, drift.png and plate.png beside them;
-study compares the runs of cases.json.
+main reads plate.csv, particles.dump and log.lammps of one run and writes summary.json, drift.png
+and plate.png beside them; study compares the runs of cases.json.
 """
 
 import sys
@@ -36,11 +36,13 @@ def main(folder):
     frames = dump.read(folder / "particles.dump")
     energy = (plate["kinetic"] + plate["strain"]) / plate["kinetic"][0]
 
-    summary.add("angular_momentum_drift", np.abs(plate["spin"] / plate["spin"][0] - 1.0).max(), target=0.005)
+    summary.add("angular_momentum_drift", np.abs(plate["spin"] / plate["spin"][0] - 1.0).max(),
+                target=0.005)
     summary.add("energy_drift", np.abs(energy - 1.0).max(), target=0.005)
     summary.add("ledger_error", np.abs(plate["total"] / plate["total"][0] - 1.0).max())
     x, y = frames[0]["x"], frames[0]["y"]
-    angle = np.unwrap([np.arctan2((x * f["y"] - y * f["x"]).sum(), (x * f["x"] + y * f["y"]).sum()) for f in frames])
+    angle = np.unwrap([np.arctan2((x * f["y"] - y * f["x"]).sum(), (x * f["x"] + y * f["y"]).sum())
+                       for f in frames])
     summary.add("turns", angle[-1] / (2.0 * np.pi))
     summary.add("rotation", angle[-1] / (values["omega"] * frames[-1].time), "of a rigid body's")
     off = [deviation(frames[0], frame) for frame in frames]
@@ -48,7 +50,9 @@ def main(folder):
     summary.add("last_deformation", off[-1] / values["length"], "of the length")
 
     picture_drift(folder / "drift.png", [(plate, "plate")])
-    plot.snapshots(folder / "plate.png", dump.nearest(frames, frames[-1].time * np.array((0.0, 0.43, 1.0)), frames[-1].time), values["dx"],
+    plot.snapshots(folder / "plate.png", dump.nearest(frames,
+                                                      frames[-1].time * np.array((0.0, 0.43, 1.0)),
+                                                      frames[-1].time), values["dx"],
                    fluid=(), solid=(1,), limits=((-0.2, 0.2), (-0.2, 0.2)))
     return summary.write()
 
@@ -59,9 +63,11 @@ def picture_drift(path, runs):
         axes = figure.add_subplot()
         for (plate, label), colour in zip(runs, COLOURS):
             energy = (plate["kinetic"] + plate["strain"]) / plate["kinetic"][0]
-            axes.plot(plate.time[1:], np.maximum(np.abs(plate["spin"] / plate["spin"][0] - 1.0)[1:], 1e-16), linewidth=1.0, color=colour,
+            axes.plot(plate.time[1:], np.maximum(np.abs(plate["spin"] / plate["spin"][0] - 1.0)[1:],
+                                                 1e-16), linewidth=1.0, color=colour,
                       label=f"{label}, angular momentum")
-            axes.plot(plate.time[1:], np.maximum(np.abs(energy - 1.0)[1:], 1e-16), "--", linewidth=1.0, color=colour, label=f"{label}, energy")
+            axes.plot(plate.time[1:], np.maximum(np.abs(energy - 1.0)[1:], 1e-16), "--",
+                      linewidth=1.0, color=colour, label=f"{label}, energy")
         axes.set_yscale("log")
         axes.set(xlabel="time [s]", ylabel="relative change")
         axes.legend(fontsize=7, loc="center right", bbox_to_anchor=(1.0, 0.4), frameon=True)
@@ -75,8 +81,10 @@ def study(folder, cases):
     for name in cases:
         for figure in summary.cases[name]["figures"]:
             if figure["name"] in names:
-                summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"], target=figure["target"])
-    picture_drift(Path(folder) / "drift.png", [(series.read(Path(path) / "plate.csv"), name) for name, path in cases.items()])
+                summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"],
+                            target=figure["target"])
+    picture_drift(Path(folder) / "drift.png",
+                  [(series.read(Path(path) / "plate.csv"), name) for name, path in cases.items()])
     return summary.write()
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of the standing wave.   usage: analyze.py FOLDER
 
-main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases) compares runs.
+main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases)
+compares runs.
 """
 
 import sys
@@ -17,15 +18,18 @@ from fsi.summary import Summary  # noqa: E402
 
 LINEAR = "linear theory, omega^2 = g k tanh kd"
 DAMPING = "linear theory, 4 nu k^2 (Lamb 1932, art. 348)"
-VISCOSITY = {"wave_viscous": 0.002, "water_inviscid": 0.0}  # kinematic [m^2/s], as in potentials/materials.fsi
+# kinematic [m^2/s], as in potentials/materials.fsi
+VISCOSITY = {"wave_viscous": 0.002, "water_inviscid": 0.0}
 LABELS = {"viscous": "nu = 0.002 m$^2$/s", "inviscid": "inviscid"}
 
 
 def oscillation(wave):
-    """Period [s] and energy decay rate [1/s] of the mode: its zeros, and the largest values between them."""
+    """Period [s] and energy decay rate [1/s] of the mode: its zeros, and the largest values between
+    them."""
     time, mode = wave.time, wave["mode"]
     before = np.nonzero(mode[:-1] * mode[1:] < 0.0)[0]
-    zeros = time[before] - mode[before] * (time[before + 1] - time[before]) / (mode[before + 1] - mode[before])
+    zeros = time[before] - mode[before] * (time[before + 1]
+                                           - time[before]) / (mode[before + 1] - mode[before])
     peaks = [(time[0], mode[0])]
     for first, last in zip(before[:-1], before[1:]):
         k = first + int(np.argmax(np.abs(mode[first:last])))
@@ -37,20 +41,24 @@ def oscillation(wave):
 
 def theory(values):
     """Period [s] and energy decay rate [1/s]."""
-    return 2.0 * np.pi / values["omega"], 4.0 * VISCOSITY[values["material"]] * values["wavenumber"] ** 2
+    return (2.0 * np.pi / values["omega"], 4.0 * VISCOSITY[values["material"]]
+            * values["wavenumber"] ** 2)
 
 
 def expected(values, time):
     """Surface velocity at the wall over time."""
-    return values["amplitude"] * values["omega"] * np.exp(-0.5 * theory(values)[1] * time) * np.cos(values["omega"] * time)
+    return values["amplitude"] * values["omega"] * np.exp(-0.5 * theory(values)[1]
+                                                          * time) * np.cos(values["omega"] * time)
 
 
 def add_figures(summary, wave, values, tail=""):
     period, rate = oscillation(wave)
     true_period, true_rate = theory(values)
-    summary.add(f"period{tail}", period, "s", true_period, LINEAR, target=0.01 if not tail else None)
+    summary.add(f"period{tail}", period, "s", true_period, LINEAR, target=0.01 if not tail
+                else None)
     if rate is not None:
-        summary.add(f"energy_decay_rate{tail}", rate, "1/s", true_rate or None, DAMPING if true_rate else None)
+        summary.add(f"energy_decay_rate{tail}", rate, "1/s", true_rate or None, DAMPING if true_rate
+                    else None)
 
 
 def draw(path, waves):
@@ -60,7 +68,8 @@ def draw(path, waves):
         for (wave, values, label), colour in zip(waves, (plot.BLUE, plot.ORANGE)):
             axes.plot(wave.time, wave["mode"], color=colour, label=f"SPH, {label}")
             few = slice(None, None, max(1, len(wave.time) // 50))
-            axes.plot(wave.time[few], expected(values, wave.time[few]), "o", markersize=3.5, markerfacecolor="white", color=colour,
+            axes.plot(wave.time[few], expected(values, wave.time[few]), "o", markersize=3.5,
+                      markerfacecolor="white", color=colour,
                       label=f"linear theory, {label}")
         axes.set_xlabel("time [s]")
         axes.set_ylabel("surface velocity at the wall [m/s]")
@@ -94,7 +103,8 @@ def study(folder, cases):
     summary = Summary(folder)
     waves = []
     for k, (name, path) in enumerate(cases.items()):
-        wave, values = series.read(Path(path) / "series.csv"), log.read(Path(path) / "log.lammps").values
+        wave, values = series.read(Path(path) / "series.csv"), log.read(Path(path)
+                                                                        / "log.lammps").values
         add_figures(summary, wave, values, f"_{name}" if k else "")
         if name in LABELS:
             waves.append((wave, values, LABELS[name]))

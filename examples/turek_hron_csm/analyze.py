@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Figures and pictures of the beam under gravity.   usage: analyze.py FOLDER
 
-main reads tip.csv and log.lammps of one run and writes summary.json and tip.png beside them; study does so for the runs of
-cases.json.
+main reads tip.csv and log.lammps of one run and writes summary.json and tip.png beside them; study
+does so for the runs of cases.json.
 """
 
 import sys
@@ -23,13 +23,15 @@ FREQUENCY = 1.0995  # [Hz], CSM3
 
 
 def swing(tip, name):
-    """(mean, amplitude) of a column as the benchmark defines them, half of maximum plus and minus minimum."""
+    """(mean, amplitude) of a column as the benchmark defines them, half of maximum plus and minus
+    minimum."""
     top, bottom = tip[name].max(), tip[name].min()
     return 0.5 * (top + bottom), 0.5 * (top - bottom)
 
 
 def frequency(tip):
-    """[Hz] from the first to the last downward passage of uy through its mean level; None with fewer than two."""
+    """[Hz] from the first to the last downward passage of uy through its mean level; None with
+    fewer than two."""
     level = tip["uy"] - swing(tip, "uy")[0]
     k = np.flatnonzero((level[:-1] > 0.0) & (level[1:] <= 0.0))
     if len(k) < 2:
@@ -48,10 +50,12 @@ def add_swing(summary, tip, suffix=""):
 
 
 def add_rest(summary, tip, suffix=""):
-    """CSM1: where the damped beam ends, and how much of that the last tenth of the time has added."""
+    """CSM1: where the damped beam ends, and how much of that the last tenth of the time has
+    added."""
     for name, reference in STATIC.items():
         summary.add(f"{name}{suffix}", 1e3 * tip[name][-1], "mm", reference, SOURCE, 0.03)
-    summary.add(f"still_moving{suffix}", abs(tip["uy"][-1] / tip.at("uy", 0.9 * tip.time[-1]) - 1.0), target=1e-3)
+    summary.add(f"still_moving{suffix}",
+                abs(tip["uy"][-1] / tip.at("uy", 0.9 * tip.time[-1]) - 1.0), target=1e-3)
 
 
 def picture_tip(path, runs, points=True):
@@ -65,19 +69,22 @@ def picture_tip(path, runs, points=True):
                 axes.plot(tip.time, 1e3 * tip["uy"], line, color=colour, label=label)
             if points:
                 seen = fem.time <= end
-                axes.plot(fem.time[seen], 1e3 * fem["uy"][seen], "o", markersize=3.5, markerfacecolor="white", color=plot.GREY,
+                axes.plot(fem.time[seen], 1e3 * fem["uy"][seen], "o", markersize=3.5,
+                          markerfacecolor="white", color=plot.GREY,
                           label="finite elements, Turek & Hron")
             axes.set_xlabel("time [s]")
         last.set_xlim(0.8 * end, end)
         whole.set_ylabel("vertical displacement\nof the tip [mm]")
-        figure.legend(*whole.get_legend_handles_labels(), ncols=3, loc="upper center", fontsize="small", columnspacing=1.2)
+        figure.legend(*whole.get_legend_handles_labels(), ncols=3, loc="upper center",
+                      fontsize="small", columnspacing=1.2)
         figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.93))
 
 
 def picture_beam(path, folder, spacing):
     """The beam at its lowest, colored by von Mises stress."""
     lowest = min(dump.read(folder / "particles.dump"), key=lambda frame: frame["y"].mean())
-    plot.snapshots(path, [lowest], spacing, fluid=(), solid=(1, 2), limits=((0.22, 0.61), (0.06, 0.22)), panel_width=5.0)
+    plot.snapshots(path, [lowest], spacing, fluid=(), solid=(1, 2),
+                   limits=((0.22, 0.61), (0.06, 0.22)), panel_width=5.0)
 
 
 def read(folder):
@@ -92,7 +99,9 @@ def main(folder):
     tip, values = read(folder)
     damped = values["damping"] > 0
     (add_rest if damped else add_swing)(summary, tip)
-    picture_tip(folder / "tip.png", [(tip, f"{values['across']:.0f} particles through the thickness")], points=not damped)
+    picture_tip(folder / "tip.png",
+                [(tip, f"{values['across']:.0f} particles through the thickness")],
+                points=not damped)
     picture_beam(folder / "beam.png", folder, values["dx"])
     return summary.write()
 
@@ -109,7 +118,8 @@ def study(folder, cases):
         else:
             add_swing(summary, tip, suffix)
             swings.append((tip, f"{values['across']:.0f} particles through the thickness"))
-            picture_beam(Path(folder) / "beam.png", Path(cases[name]), values["dx"])  # of the finest
+            # of the finest
+            picture_beam(Path(folder) / "beam.png", Path(cases[name]), values["dx"])
     picture_tip(Path(folder) / "tip.png", swings)
     return summary.write()
 

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Deflection of the elastic faces of a wedge that enters water at constant speed: Wagner's theory and beams.   usage: wagner.py
+"""Deflection of the elastic faces of a wedge that enters water at constant speed: Wagner's theory
+and beams.   usage: wagner.py
 
-Each face is a Timoshenko beam in plane strain, clamped at both ends, with the membrane force of its stretched middle line. The water is
-that of Wagner: potential flow on the plane of the still surface, wet between -c and c, pressure -rho dphi/dt. phi is found for the
-normal velocity of the rigid wedge and of each mode of the beams. c is where the risen surface, by Wagner's condition, meets the bent
-faces. What is left out is of the order of the deadrise: at 10 degrees the similarity solution's force on a rigid wedge is 0.858 of
-Wagner's (Zhao and Faltinsen 1993). `load` scales the water by that.
+Each face is a Timoshenko beam in plane strain, clamped at both ends, with the membrane force of its
+stretched middle line. The water is that of Wagner: potential flow on the plane of the still
+surface, wet between -c and c, pressure -rho dphi/dt. phi is found for the normal velocity of the
+rigid wedge and of each mode of the beams. c is where the risen surface, by Wagner's condition,
+meets the bent faces. What is left out is of the order of the deadrise: at 10 degrees the similarity
+solution's force on a rigid wedge is 0.858 of Wagner's (Zhao and Faltinsen 1993). `load` scales the
+water by that.
 
 Prints how far the deflection depends on modes, elements, time step, and on what is left out.
 """
@@ -18,12 +21,14 @@ SIMILARITY = 213.98 / (np.pi**3 / 4.0 / np.tan(np.radians(DEADRISE)) ** 2)
 
 
 def beam(elements, modes, shear=True):
-    """(angular frequencies, values at the nodes, places of the nodes) of a clamped beam; modes are normal over its mass."""
+    """(angular frequencies, values at the nodes, places of the nodes) of a clamped beam; modes are
+    normal over its mass."""
     stiff = YOUNG / (1.0 - POISSON**2)
     bend, mass = stiff * THICKNESS**3 / 12.0, DENSITY * THICKNESS
     slide = 5.0 / 6.0 * YOUNG / (2.0 * (1.0 + POISSON)) * THICKNESS * (1.0 if shear else 1e4)
     size = FACE / elements
-    K = np.zeros((2 * elements + 2, 2 * elements + 2))  # deflection and rotation of each node, one-point rule for shear
+    # deflection and rotation of each node, one-point rule for shear
+    K = np.zeros((2 * elements + 2, 2 * elements + 2))
     gamma = np.array([-1.0 / size, -0.5, 1.0 / size, -0.5])
     kappa = np.array([0.0, -1.0, 0.0, 1.0]) / size
     for e in range(elements):
@@ -39,7 +44,8 @@ def beam(elements, modes, shear=True):
 
 
 class Water:
-    """Added masses of the modes, and the means that Wagner's condition asks for, tabled over the wet half width."""
+    """Added masses of the modes, and the means that Wagner's condition asks for, tabled over the
+    wet half width."""
 
     def __init__(self, values, nodes, widths=200, terms=100, points=1000):
         self.step = FACE * np.cos(np.radians(DEADRISE)) / widths
@@ -62,7 +68,8 @@ class Water:
         x = c / self.step
         k = min(max(int(x) - 1, 0), len(table) - 4)
         t = x - k
-        weights = (-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6)
+        weights = (-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2,
+                   -t * (t - 1) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6)
         return sum(w * table[k + m] for m, w in enumerate(weights))
 
 
@@ -77,19 +84,23 @@ def deflection(end=2e-3, step=4e-6, elements=60, modes=5, load=1.0, shear=True, 
     most = FACE * cosine
 
     def wet(t, a):
-        """Wagner's condition: the mean of the wedge's height over the still water, at x = c sin(theta), is zero."""
+        """Wagner's condition: the mean of the wedge's height over the still water, at x = c
+        sin(theta), is zero."""
         low, high = 0.0, most
         for _ in range(50):
             c = 0.5 * (low + high)
-            below = 2.0 / np.pi * c * np.tan(slope) - SPEED * t + water.at(c, water.mean) @ a / cosine < 0.0
+            below = 2.0 / np.pi * c * np.tan(slope) - SPEED * t + water.at(
+                c, water.mean) @ a / cosine < 0.0
             low, high = (c, high) if below else (low, c)
         return 0.5 * (low + high)
 
     def rate(t, a, q):
-        # q: momentum of the modes of both faces and their water; a face is 1/cos longer than it is wide
+        # q: momentum of the modes of both faces and their water; a face is 1/cos longer than it is
+        # wide
         c = wet(t, a)
         mass = load * water.at(c, water.mass)
-        moved = np.linalg.solve(2.0 * np.eye(modes) + mass[1:, 1:] / cosine**2, q + SPEED * mass[1:, 0] / cosine)
+        moved = np.linalg.solve(2.0 * np.eye(modes) + mass[1:, 1:] / cosine**2,
+                                q + SPEED * mass[1:, 0] / cosine)
         strain = 0.5 * a @ stretch @ a
         return moved, -2.0 * (omega**2 * a + axial * strain * stretch @ a), c
 
@@ -109,11 +120,17 @@ def deflection(end=2e-3, step=4e-6, elements=60, modes=5, load=1.0, shear=True, 
 
 def main():
     """Prints the reference at 1, 1.5 and 1.97 ms, and what it depends on."""
-    for label, settings in {"reference": {}, "3 modes": {"modes": 3}, "8 modes": {"modes": 8}, "120 elements": {"elements": 120},
-                            "half the step": {"step": 2e-6}, "no membrane force": {"membrane": False}, "no shear, no rotary inertia": {"shear": False},
-                            "neither, as Scolan": {"shear": False, "membrane": False}, "load of the similarity solution": {"load": SIMILARITY}}.items():
+    for label, settings in {"reference": {}, "3 modes": {"modes": 3}, "8 modes": {"modes": 8},
+                            "120 elements": {"elements": 120},
+                            "half the step": {"step": 2e-6},
+                            "no membrane force": {"membrane": False},
+                            "no shear, no rotary inertia": {"shear": False},
+                            "neither, as Scolan": {"shear": False, "membrane": False},
+                            "load of the similarity solution": {"load": SIMILARITY}}.items():
         time, bent, c = deflection(**settings)
-        print(f"{label:32s}", *(f"{1e3 * np.interp(t, time, bent):7.3f} mm" for t in (1e-3, 1.5e-3, 1.97e-3)), f"  c = {np.interp(1.97e-3, time, c):.3f} m")
+        print(f"{label:32s}",
+              *(f"{1e3 * np.interp(t, time, bent):7.3f} mm" for t in (1e-3, 1.5e-3, 1.97e-3)),
+              f"  c = {np.interp(1.97e-3, time, c):.3f} m")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Figures and pictures of fluids with a yield stress or a power law in a channel.   usage: analyze.py FOLDER
+"""Figures and pictures of fluids with a yield stress or a power law in a channel.   usage:
+analyze.py FOLDER
 
-main reads flow.csv, particles.dump and run.json of one run; study compares the runs of cases.json. Half width, density, force: 1.
+main reads flow.csv, particles.dump and run.json of one run; study compares the runs of cases.json.
+Half width, density, force: 1.
 """
 
 import json
@@ -25,7 +27,8 @@ def settings(folder):
     """(name of the law, its parameters, rows, when the force ends) of a run"""
     given = json.loads((Path(folder) / RUN_FILE).read_text())["variables"]
     name, *values = given["law"].split()
-    return name, [float(x) for x in values if "/" not in x], int(given["rows"]), float(given["tend"])
+    return name, [float(x) for x in values if "/" not in x], int(given["rows"]), float(
+        given["tend"])
 
 
 def viscosity(rate, tau, K, n, m):
@@ -40,7 +43,8 @@ def steady(y, name, p):
         K, n = p[:2]
         return n / (n + 1) * K**(-1 / n) * (1 - np.abs(y)**((n + 1) / n))
     z = np.linspace(0, 1, 4001)
-    low, high = np.zeros_like(z), np.full_like(z, 10.0)  # the rate that has the stress z, by bisection
+    # the rate that has the stress z, by bisection
+    low, high = np.zeros_like(z), np.full_like(z, 10.0)
     for _ in range(60):
         middle = 0.5 * (low + high)
         less = viscosity(middle, *p) * middle < z
@@ -50,7 +54,8 @@ def steady(y, name, p):
 
 
 def stopping(p, parts=PARTS, rows=400, dt=1e-4):
-    """When the mean velocity is these parts of the steady one, after the force is turned off: implicit in time, half of the channel"""
+    """When the mean velocity is these parts of the steady one, after the force is turned off:
+    implicit in time, half of the channel"""
     y = (np.arange(rows) + 0.5) / rows
     u = steady(y, "", p)
     flow, t, before, found = u.mean(), 0.0, 1.0, []
@@ -92,22 +97,27 @@ def judge(summary, name, value, unit, reference, source, target):
 def add(summary, folder, suffix="", judged=True):
     """The figures of one run"""
     name, p, _, tend = settings(folder)
-    frame, flow = dump.read(Path(folder) / "particles.dump")[1], series.read(Path(folder) / "flow.csv")
+    frame, flow = dump.read(Path(folder) / "particles.dump")[1], series.read(
+        Path(folder) / "flow.csv")
     v, exact = frame["vx"], steady(frame["y"], name, p)
     target = 0.01 if judged else None
     error = np.sqrt(np.mean((v - exact)**2) / np.mean(exact**2))
-    summary.add("velocity_error" + suffix, error, "", None, None, target if name == "power" else None)
+    summary.add("velocity_error" + suffix, error, "", None, None, target if name == "power"
+                else None)
     if name == "power":
-        judge(summary, "mean_over_largest" + suffix, v.mean() / v.max(), "", (p[1] + 1) / (2 * p[1] + 1), SOURCE, target)
+        judge(summary, "mean_over_largest" + suffix, v.mean() / v.max(), "",
+              (p[1] + 1) / (2 * p[1] + 1), SOURCE, target)
         return
     tau, K, n, m = p
     if n == 1:
-        judge(summary, "center_velocity" + suffix, v.max(), "m/s", (1 - tau)**2 / (2 * K) + tau / m, CENTER, target)
+        judge(summary, "center_velocity" + suffix, v.max(), "m/s", (1 - tau)**2 / (2 * K) + tau / m,
+              CENTER, target)
     after = flow.time >= tend
     t, part = flow.time[after] - tend, flow["mean"][after]
     for limit, time in zip(PARTS, stopping(p)):
         if part[-1] < limit * part[0]:
-            judge(summary, f"stops_{limit:g}{suffix}", np.interp(-limit, -part / part[0], t), "s", time, STOPS, 0.03 if judged else None)
+            judge(summary, f"stops_{limit:g}{suffix}", np.interp(-limit, -part / part[0], t), "s",
+                  time, STOPS, 0.03 if judged else None)
 
 
 def draw(folder, cases):
@@ -119,7 +129,8 @@ def draw(folder, cases):
             frame, y = dump.read(Path(path) / "particles.dump")[1], np.linspace(0, 1, 201)
             axes.plot(y, steady(y, law, p), color=color, label=f"{name}, theory")
             rows, first = np.unique(np.round(frame["y"], 6), return_index=True)
-            axes.plot(rows[rows > 0][::2], frame["vx"][first][rows > 0][::2], "o", color=color, markersize=4, markerfacecolor="white")
+            axes.plot(rows[rows > 0][::2], frame["vx"][first][rows > 0][::2], "o", color=color,
+                      markersize=4, markerfacecolor="white")
         axes.set(xlabel="y [m]", ylabel="velocity [m/s]")
         axes.legend()
         figure.tight_layout()
@@ -138,7 +149,9 @@ def study(folder, cases):
     summary = Summary(folder)
     for name, path in cases.items():
         add(summary, path, f"_{name}", "rows" not in name)
-    draw(folder, {text: cases[name] for text, name in (("power law, n = 0.25", "power_0.25"), ("n = 2", "power_2"), ("Bingham", "0.5_100")) if name in cases})
+    draw(folder, {text: cases[name] for text, name in (("power law, n = 0.25", "power_0.25"),
+                                                       ("n = 2", "power_2"), ("Bingham", "0.5_100"))
+                  if name in cases})
     return summary.write()
 
 

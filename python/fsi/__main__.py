@@ -1,6 +1,7 @@
 """`python3 -m fsi`, and the command `fsi` where it is installed. What it does is in fsi/cli.py.
 
-The first python on the PATH may lack numpy and matplotlib where another has them: then that one goes on.
+The first python on the PATH may lack numpy and matplotlib where another has them: then that one
+goes on.
 """
 
 import importlib.util
@@ -14,10 +15,12 @@ NEEDED = ("numpy", "matplotlib")
 
 def able_python():
     """Path of a python that has what is needed; None if there is none."""
-    check = "import sys, importlib.util as u; sys.exit(not all(u.find_spec(m) for m in sys.argv[1:]))"
+    check = ("import sys, importlib.util as u; sys.exit(not all(u.find_spec(m) for m in "
+             "sys.argv[1:]))")
     for candidate in ("python3", "/usr/bin/python3", "/usr/local/bin/python3"):
         try:
-            if subprocess.run([candidate, "-c", check, *NEEDED], stderr=subprocess.DEVNULL, check=False).returncode == 0:
+            if subprocess.run([candidate, "-c", check, *NEEDED], stderr=subprocess.DEVNULL,
+                              check=False).returncode == 0:
                 return candidate
         except OSError:
             pass
@@ -30,9 +33,12 @@ def main(arguments=None):
     if missing:
         other = able_python()
         if other is None:
-            sys.exit(f"fsi: {sys.executable} has no {' and no '.join(missing)}, nor has another python here: install them "
-                     f"(Debian: apt-get install {' '.join(f'python3-{name}' for name in NEEDED)}; then /usr/bin/python3 -m fsi)")
-        places = [str(Path(__file__).resolve().parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
+            sys.exit(f"fsi: {sys.executable} has no {' and no '.join(missing)}, nor has another "
+                     "python here: install them "
+                     f"(Debian: apt-get install {' '.join(f'python3-{name}' for name in NEEDED)}; "
+                     "then /usr/bin/python3 -m fsi)")
+        places = [str(Path(__file__).resolve().parents[1]),
+                  *filter(None, [os.environ.get("PYTHONPATH")])]
         os.environ["PYTHONPATH"] = os.pathsep.join(places)
         os.execvp(other, [other, "-m", "fsi", *sys.argv[1:]])
     from .cli import main as run  # needs them

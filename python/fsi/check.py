@@ -1,5 +1,5 @@
-"""What the package says about a deck, in a copy of it and of the files that it names: every `run N` becomes `run 0`. Then a few steps of each run for an
-estimate of time and memory."""
+"""What the package says about a deck, in a copy of it and of the files that it names: every `run N`
+becomes `run 0`. Then a few steps of each run for an estimate of time and memory."""
 
 import math
 import os
@@ -13,7 +13,9 @@ from . import dump, launch, log, paths
 from .command import Refusal
 from .sweep import deck_variables
 
-WRITES = ("dump", "restart", "write_data", "write_dump", "write_restart", "write_coeff", "log", "print", "shell")  # commands whose words are no input
+# commands whose words are no input
+WRITES = ("dump", "restart", "write_data", "write_dump", "write_restart", "write_coeff", "log",
+          "print", "shell")
 RUN = re.compile(r"^([ \t]*)run[ \t]+(\S+)(?:[^\n]*&[ \t]*\n)*[^\n]*$", re.M)
 BODIES, FEW = "fsi_check.bodies", 6  # a dump of them; how many are listed
 SAMPLE = 40  # steps of each run, of which the estimate is made
@@ -24,12 +26,14 @@ def lammps():
     """The LAMMPS of the build, or the one on the PATH."""
     found = str(paths.BUILD / "lmp") if (paths.BUILD / "lmp").exists() else shutil.which("lmp")
     if found is None:
-        raise Refusal("there is no LAMMPS: neither build/lmp (tools/setup makes it; FSI_BUILD_DIR says where) nor lmp on the PATH")
+        raise Refusal("there is no LAMMPS: neither build/lmp (tools/setup makes it; FSI_BUILD_DIR "
+                      "says where) nor lmp on the PATH")
     return found
 
 
 def inputs(deck, variables, folder):
-    """(files below `folder` that a deck, and those that it includes, may read; those of them that hold commands).
+    """(files below `folder` that a deck, and those that it includes, may read; those of them that
+    hold commands).
 
     Words that name a file; a variable whose value is not known here stands for anything.
     """
@@ -46,7 +50,8 @@ def inputs(deck, variables, folder):
                     continue
                 word = re.sub(r"\$\{(\w+)\}|\$(\w)", lambda m: known.get(m[1] or m[2], "*"), word)
                 word = re.sub(r"\*+", "*", re.sub(r"\$\([^)]*\)", "*", word))
-                if len(word.replace("*", "")) < 3 or word.startswith("/") or ".." in Path(word).parts:
+                if len(word.replace("*", "")) < 3 or word.startswith("/") or ".." in Path(
+                    word).parts:
                     continue
                 for file in folder.glob(word) if "*" in word else [folder / word]:
                     if file.is_file() and file not in found:
@@ -71,16 +76,19 @@ def spelled_out(text):
 
 
 def shortened(text, steps=0):
-    """A deck's text in which every run computes so few steps; how long it would have been is printed, and the time step at its end. Without a step
-    bodies are dumped."""
+    """A deck's text in which every run computes so few steps; how long it would have been is
+    printed, and the time step at its end. Without a step bodies are dumped."""
     text = spelled_out(text)
     text = CONDITIONAL_RUN.sub(rf"\1run {steps}", text)
-    after = '\n{0}print "FSI dt $(dt)"' if steps else "\n{0}write_dump all custom " + BODIES + " id type mol x y z modify time yes thresh mol > 0"
-    return RUN.sub(lambda m: f'{m[1]}print "FSI steps {m[2]}"\n{m[1]}run {"0" if m[2] == "0" else steps}' + after.format(m[1]), text)
+    after = ('\n{0}print "FSI dt $(dt)"' if steps else "\n{0}write_dump all custom " + BODIES
+             + " id type mol x y z modify time yes thresh mol > 0")
+    return RUN.sub(lambda m: f'{m[1]}print "FSI steps {m[2]}"\n'
+                   f'{m[1]}run {"0" if m[2] == "0" else steps}' + after.format(m[1]), text)
 
 
 def run(deck, variables, steps=0, look=None):
-    """(LAMMPS' exit status, what it printed, its log as read, the log's text) of a deck whose runs have so many steps; look: given its folder."""
+    """(LAMMPS' exit status, what it printed, its log as read, the log's text) of a deck whose runs
+    have so many steps; look: given its folder."""
     deck, folder = Path(deck).resolve(), Path.cwd()
     if not deck.is_file():
         raise Refusal(f"{deck} is not a file")
@@ -97,31 +105,40 @@ def run(deck, variables, steps=0, look=None):
                 target.write_text(shortened(file.read_text(errors="replace"), steps))
             else:
                 shutil.copyfile(file, target)
-        command = [lammps(), "-in", str(deck.relative_to(folder) if folder in deck.parents else deck.name), "-log", "log.lammps", "-nocite"]
+        command = [lammps(), "-in",
+                   str(deck.relative_to(folder) if folder in deck.parents else deck.name), "-log",
+                   "log.lammps", "-nocite"]
         for key, value in variables.items():
             command += ["-var", key, value]
         environment = launch.environment()
         if not paths.POTENTIALS.is_dir():  # not in the repository
             environment["LAMMPS_POTENTIALS"] = os.environ.get("LAMMPS_POTENTIALS", "")
-        done = subprocess.run(command, cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        done = subprocess.run(command, cwd=place, env=environment, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True, errors="replace", check=False)
         if look:
             look(place)
         path = place / "log.lammps"
-        return done.returncode, done.stdout, *((log.read(path), path.read_text(errors="replace")) if path.exists() else (None, ""))
+        return done.returncode, done.stdout, *((log.read(path), path.read_text(errors="replace"))
+                                               if path.exists() else (None, ""))
 
 
 def length(lines, found):
-    """How long the runs would have been, in words: to a time where fix fsi/dt stops them, else so many steps."""
-    steps = sum(int(float(line.split()[2])) for line in lines if re.fullmatch(r"FSI steps \d+(\.\d*)?(e\+?\d+)?", line))
+    """How long the runs would have been, in words: to a time where fix fsi/dt stops them, else so
+    many steps."""
+    steps = sum(int(float(line.split()[2])) for line in lines
+                if re.fullmatch(r"FSI steps \d+(\.\d*)?(e\+?\d+)?", line))
     if found.stop is None:
         return f", {steps} steps" if steps else ""
-    limits = [match[1] for line in lines if (match := re.search(r"Fix fsi/dt: .* limits the time step, to (\S+)", line))]
-    return f", to t = {found.stop:g}" + (f" in {found.stop / float(limits[-1]):.2g} steps or more" if limits else "")
+    limits = [match[1] for line in lines
+              if (match := re.search(r"Fix fsi/dt: .* limits the time step, to (\S+)", line))]
+    return f", to t = {found.stop:g}" + (f" in {found.stop / float(limits[-1]):.2g} steps or more"
+                                         if limits else "")
 
 
 def estimate(found, text):
-    """CPU seconds on one rank of a deck whose runs were shortened: those of a step of each, times the steps that it would have had. None: not known."""
+    """CPU seconds on one rank of a deck whose runs were shortened: those of a step of each, times
+    the steps that it would have had. None: not known."""
     seconds, time, stop, steps, runs = 0.0, 0.0, None, None, iter(found.finished)
     for line in text.splitlines():
         if match := log.STOP.match(line):
@@ -147,34 +164,42 @@ def cost(deck, variables):
     seconds = estimate(found, text) if status == 0 and found else None
     if seconds is None:
         return "fsi check: no estimate of time: the deck does not run in parts\n"
-    in_words = f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.0f} h"
+    in_words = (f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min" if seconds < 7200
+                else f"{seconds / 3600:.0f} h")
     memory = max(r.bytes_per_rank or 0.0 for r in found.finished) / 1e6  # as LAMMPS counts it
-    return (f"fsi check: about {in_words} of CPU time on one rank, by {SAMPLE} steps of each run: within a factor of 2 if the number of particles and the time "
+    return (f"fsi check: about {in_words} of CPU time on one rank, by {SAMPLE} steps of each run: "
+            "within a factor of 2 if the number of particles and the time "
             f"step stay; arrays of {memory:.0f} MB\n")
 
 
 def bodies(folder):
-    """[what each body is made of], of the dump in `folder`: a flap whose length is no whole number of spacings is shorter than its region."""
+    """[what each body is made of], of the dump in `folder`: a flap whose length is no whole number
+    of spacings is shorter than its region."""
     path = folder / BODIES
     frame = next(iter(dump.frames(path)), None) if path.exists() else None
     if frame is None or not len(frame):
         return []
-    found = [f"fsi check: {name}: {number} particles, {' x '.join(f'{s:.3g}' for s in sizes)} spacings of {dump.spacing(frame.select(frame['mol'] == int(name.split()[1]))):.3g}"
+    found = [f"fsi check: {name}: {number} particles, {' x '.join(f'{s:.3g}' for s in sizes)} "
+             f"spacings of {dump.spacing(frame.select(frame['mol'] == int(name.split()[1]))):.3g}"
              for name, number, sizes in dump.bodies(frame) if sizes]
     return found[:FEW] + ([f"fsi check: and {len(found) - FEW} more"] if len(found) > FEW else [])
 
 
 def main(deck, variables):
-    """Prints what there is to say; 0 if the deck runs and there is no advice of the package; LAMMPS has warnings that are of no concern here."""
+    """Prints what there is to say; 0 if the deck runs and there is no advice of the package; LAMMPS
+    has warnings that are of no concern here."""
     made_of = []
-    status, output, found, _ = run(deck, variables, look=lambda folder: made_of.extend(bodies(folder)))
+    status, output, found, _ = run(deck, variables,
+                                   look=lambda folder: made_of.extend(bodies(folder)))
     lines = output.splitlines()
     for start, line in enumerate(lines):
         if line.startswith("FSI: "):  # the effects: up to where LAMMPS goes on
-            end = next((k for k in range(start + 1, len(lines)) if not lines[k].startswith("  ")), len(lines))
+            end = next((k for k in range(start + 1, len(lines)) if not lines[k].startswith("  ")),
+                       len(lines))
             print("\n".join(lines[start:end]))
     warnings = list(dict.fromkeys(line for line in lines if line.startswith("WARNING")))
-    advice = [line for line in warnings if re.search("fsi", line.rpartition(" (")[0] or line, re.I)]  # before the place in the source
+    # before the place in the source
+    advice = [line for line in warnings if re.search("fsi", line.rpartition(" (")[0] or line, re.I)]
     errors = [line for line in lines if line.startswith(("ERROR", "Last input line"))]
     if warnings or errors:
         print(*warnings, *errors, sep="\n")
@@ -183,7 +208,8 @@ def main(deck, variables):
         if not errors:
             print(*lines[-5:], sep="\n")
         print(f"fsi check: {deck} does not run" if not ran else
-              f"fsi check: {deck} fails after {len(ran)} of its runs were set up; perhaps only because no step was computed")
+              f"fsi check: {deck} fails after {len(ran)} of its runs were set up; perhaps only "
+              "because no step was computed")
         return 1
     if not ran:
         print(f"fsi check: {deck} has no run")
@@ -193,5 +219,6 @@ def main(deck, variables):
     print(cost(deck, variables), end="")
     print(f"fsi check: {ran[0].atoms} particles{length(lines, found)}; "
           + (f"{len(advice)} warning{'s' * (len(advice) > 1)}" if advice else "nothing to warn of")
-          + (f" (and {len(warnings) - len(advice)} of LAMMPS' own)" if len(warnings) > len(advice) else ""))
+          + (f" (and {len(warnings) - len(advice)} of LAMMPS' own)" if len(warnings) > len(advice)
+             else ""))
     return 1 if advice else 0

@@ -8,7 +8,8 @@ class Refusal(Exception):
 
 
 def split(arguments, names, form="NAME=VALUE", more=True):
-    """NAME=VALUE arguments as ({those of `names`}, {any others}). form: what is expected, in words; more: whether there may be others."""
+    """NAME=VALUE arguments as ({those of `names`}, {any others}). form: what is expected, in words;
+    more: whether there may be others."""
     found = {}, {}
     for argument in arguments:
         name, _, value = argument.partition("=")

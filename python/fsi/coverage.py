@@ -14,7 +14,8 @@ BOUND = 90.0  # per cent
 
 
 def collect():
-    """{file name: {line: executed?}} over all objects; a line of a header counts if any object executed it."""
+    """{file name: {line: executed?}} over all objects; a line of a header counts if any object
+    executed it."""
     covered = defaultdict(lambda: defaultdict(bool))
     objects = [p for p in paths.BUILD.rglob("*.gcda") if "FSI" in p.parts or "fsi" in p.name]
     with tempfile.TemporaryDirectory() as folder:
@@ -22,7 +23,8 @@ def collect():
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for report in Path(folder).glob("*.gcov.json.gz"):
             for source in json.loads(gzip.decompress(report.read_bytes()))["files"]:
-                path = (paths.BUILD / source["file"]).resolve()  # the compiler cache makes paths relative
+                # the compiler cache makes paths relative
+                path = (paths.BUILD / source["file"]).resolve()
                 if path.parent in paths.PACKAGES:
                     for line in source["lines"]:
                         covered[path.name][line["line_number"]] |= line["count"] > 0
@@ -30,7 +32,8 @@ def collect():
 
 
 def main(arguments):
-    """Runs pytest with `arguments` on an instrumented build and prints coverage per file; 0 if above the bound."""
+    """Runs pytest with `arguments` on an instrumented build and prints coverage per file; 0 if
+    above the bound."""
     for path in paths.BUILD.rglob("*.gcda"):
         path.unlink()
     results = [suite.googletest(), suite.pytest(arguments)]
@@ -40,7 +43,8 @@ def main(arguments):
         missed = sorted(n for n, executed in lines.items() if not executed)
         total += len(lines)
         hit += len(lines) - len(missed)
-        print(f"{name:32s} {100 * (1 - len(missed) / len(lines)):6.1f} %  not executed: {missed[:12] or '-'}")
+        print(f"{name:32s} {100 * (1 - len(missed) / len(lines)):6.1f} %  not executed: "
+              f"{missed[:12] or '-'}")
     share = 100.0 * hit / total if total else 0.0
     print(f"line coverage of src/FSI: {share:.1f} % of {total} lines")
     return 0 if share > BOUND and not any(failed for _, failed in results) else 1

@@ -32,23 +32,27 @@ class Frame:
 
     def select(self, mask):
         """The frame's particles for which `mask` (particles,) holds."""
-        return Frame(self.step, self.time, self.box, {name: values[mask] for name, values in self.columns.items()})
+        return Frame(self.step, self.time, self.box,
+                     {name: values[mask] for name, values in self.columns.items()})
 
     def of_types(self, *types):
         """The frame's particles of the given atom types."""
         return self.select(np.isin(self["type"], types))
 
     def vector(self, names="xyz"):
-        """(particles, d) array of those of the named columns that the dump has: positions, or ("vx", "vy", "vz")."""
+        """(particles, d) array of those of the named columns that the dump has: positions, or
+        ("vx", "vy", "vz")."""
         return np.column_stack([self[name] for name in names if name in self])
 
 
 def frames(path, only=None, progress=None):
     """Yields the frames of a dump one by one, so that a long one need not fit in memory.
 
-    only: numbers of the frames, from 0, that are wanted; progress(share of the file that is read) is called before each frame.
+    only: numbers of the frames, from 0, that are wanted; progress(share of the file that is read)
+    is called before each frame.
     """
-    with open(path, "rb") as raw, io.TextIOWrapper(gzip.open(raw) if str(path).endswith(".gz") else raw) as file:
+    with open(path, "rb") as raw, io.TextIOWrapper(gzip.open(raw) if str(path).endswith(".gz")
+                                                   else raw) as file:
         step, time, count, box, number = None, None, None, None, -1
         size = os.fstat(raw.fileno()).st_size
         for line in file:
@@ -64,7 +68,8 @@ def frames(path, only=None, progress=None):
                 box = np.array([[float(word) for word in next(file).split()[:2]] for _ in range(3)])
             elif line.startswith("ITEM: ATOMS"):
                 if time is None:
-                    raise ValueError(f"{path} has no times: the deck needs `dump_modify ... time yes`")
+                    raise ValueError(
+                        f"{path} has no times: the deck needs `dump_modify ... time yes`")
                 if only is not None and number not in only:
                     for _ in islice(file, count):
                         pass
@@ -72,16 +77,19 @@ def frames(path, only=None, progress=None):
                 names = line.split()[2:]
                 values = np.fromstring("".join(islice(file, count)), sep=" ")
                 if values.size != count * len(names):
-                    warnings.warn(f"{path}: the frame of step {step} is incomplete and left out", stacklevel=2)
+                    warnings.warn(f"{path}: the frame of step {step} is incomplete and left out",
+                                  stacklevel=2)
                     return
                 yield _frame(step, time, box, names, values.reshape(count, len(names)))
 
 
 def some(path, number, progress=None):
-    """So many frames, evenly chosen from the first to the last; all if there are fewer. An error if there is none."""
+    """So many frames, evenly chosen from the first to the last; all if there are fewer. An error if
+    there is none."""
     with (gzip.open if str(path).endswith(".gz") else open)(path, "rt") as file:
         total = sum(line.startswith("ITEM: ATOMS") for line in file)
-    found = list(frames(path, {round(k) for k in np.linspace(0, total - 1, min(number, total))}, progress)) if total else []
+    found = list(frames(path, {round(k) for k in np.linspace(0, total - 1, min(number, total))},
+                        progress)) if total else []
     if not found:
         raise ValueError(f"{path} has no frames")
     return found
@@ -93,7 +101,8 @@ def read(path):
 
 
 def nearest(found, times, tolerance):
-    """The frames nearest to each of `times`, at most `tolerance` away from it; in order, none twice."""
+    """The frames nearest to each of `times`, at most `tolerance` away from it; in order, none
+    twice."""
     chosen = {}
     for time in times:
         frame = min(found, key=lambda f: abs(f.time - time), default=None)
@@ -114,13 +123,16 @@ def spacing(frame, samples=200):
 
 
 def bodies(frame):
-    """What a frame is made of, [(name, particles, sizes in its own spacings, the least first)]: solids by molecule ID, all else by type.
+    """What a frame is made of, [(name, particles, sizes in its own spacings, the least first)]:
+    solids by molecule ID, all else by type.
 
-    Sizes are those along the axes, or along the principal axes of what lies aslant: a plate's least is the particles across it.
+    Sizes are those along the axes, or along the principal axes of what lies aslant: a plate's least
+    is the particles across it.
     """
     loose = frame["mol"] == 0 if "mol" in frame else np.ones(len(frame), bool)
     kinds = [(f"type {t}", loose & (frame["type"] == t)) for t in np.unique(frame["type"][loose])]
-    kinds += [(f"body {m}", frame["mol"] == m) for m in np.unique(frame["mol"][~loose])] if "mol" in frame else []
+    kinds += [(f"body {m}", frame["mol"] == m)
+              for m in np.unique(frame["mol"][~loose])] if "mol" in frame else []
     found = []
     for name, mask in kinds:
         part = frame.select(mask)
@@ -131,7 +143,8 @@ def bodies(frame):
         x = x[:, np.ptp(x, axis=0) > 0.0]  # in two dimensions there may be a column of zeros
         aslant = x @ np.linalg.eigh(np.atleast_2d(np.cov(x.T)))[1]
         sizes, tight = np.ptp(x, axis=0), np.ptp(aslant, axis=0)
-        found.append((name, len(part), sorted(1.0 + (tight if np.prod(tight) < 0.9 * np.prod(sizes) else sizes) / spacing(part))))
+        found.append((name, len(part), sorted(1.0 + (tight if np.prod(tight) < 0.9 * np.prod(sizes)
+                                                     else sizes) / spacing(part))))
     return found
 
 
@@ -140,5 +153,6 @@ def _frame(step, time, box, names, table):
         table = table[np.argsort(table[:, names.index("id")], kind="stable")]
     columns = {}
     for k, name in enumerate(names):
-        columns[name] = table[:, k].astype(np.int64) if name in _INTEGERS else np.ascontiguousarray(table[:, k])
+        columns[name] = table[:, k].astype(np.int64) if name in _INTEGERS else np.ascontiguousarray(
+            table[:, k])
     return Frame(step, time, box, columns)

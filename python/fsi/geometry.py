@@ -18,8 +18,10 @@ def min_pair_distance(points, spacing):
 
 
 def _min_within(points, cutoff):
-    """As above, exact if the answer is at most `cutoff`; infinity if no two points share neighbouring cells."""
-    return float(min((np.sqrt(((points[i] - points[j]) ** 2).sum(axis=1).min()) for i, j in _near(points, cutoff)), default=np.inf))
+    """As above, exact if the answer is at most `cutoff`; infinity if no two points share
+    neighbouring cells."""
+    return float(min((np.sqrt(((points[i] - points[j]) ** 2).sum(axis=1).min())
+                      for i, j in _near(points, cutoff)), default=np.inf))
 
 
 def _near(points, cutoff):
@@ -42,29 +44,33 @@ def _near(points, cutoff):
 
 
 def vorticity(x, y, u, v, reach):
-    """dv/dx - du/dy at points in the plane, of the differences to the neighbors within `reach`: the gradient that fits them best. Zero where
-    there are too few, or all in one line."""
+    """dv/dx - du/dy at points in the plane, of the differences to the neighbors within `reach`: the
+    gradient that fits them best. Zero where there are too few, or all in one line."""
     moments = np.zeros((7, len(x)))  # of xx, xy, yy, x u, y u, x v, y v
     points = np.column_stack([x, y])
     for i, j in _near(points, reach):
         (dx, dy), du, dv = (points[j] - points[i]).T, u[j] - u[i], v[j] - v[i]
         weight = np.maximum(0.0, 1.0 - (dx**2 + dy**2) / reach**2)
-        for moment, value in zip(moments, (dx * dx, dx * dy, dy * dy, dx * du, dy * du, dx * dv, dy * dv)):
+        for moment, value in zip(moments,
+                                 (dx * dx, dx * dy, dy * dy, dx * du, dy * du, dx * dv, dy * dv)):
             for k in (i, j):  # both differences change their sign
                 moment += np.bincount(k, weight * value, len(x))
     xx, xy, yy, xu, yu, xv, yv = moments
     size = xx * yy - xy**2
     enough = size > 1e-3 * (xx + yy)**2
-    return np.where(enough, (yy * xv - xy * yv - xx * yu + xy * xu) / np.where(enough, size, 1.0), 0.0)
+    return np.where(enough, (yy * xv - xy * yv - xx * yu + xy * xu) / np.where(enough, size, 1.0),
+                    0.0)
 
 
 def vorticity_of_levels(water, dx):
-    """The same of a frame whose fluid has levels, each of its neighbors within 2.5 spacings of its own: type 1 is the coarsest, of spacing dx,
-    type 3 the next, each of 1/sqrt(2) of the one before."""
+    """The same of a frame whose fluid has levels, each of its neighbors within 2.5 spacings of its
+    own: type 1 is the coarsest, of spacing dx, type 3 the next, each of 1/sqrt(2) of the one
+    before."""
     spin = np.zeros(len(water["x"]))
     for kind in np.unique(water["type"]):
         level = max(0, kind - 2)
-        near = vorticity(*(water[name] for name in ("x", "y", "vx", "vy")), 2.5 * dx / 2**(level / 2))
+        near = vorticity(*(water[name] for name in ("x", "y", "vx", "vy")),
+                         2.5 * dx / 2**(level / 2))
         spin = np.where(water["type"] == kind, near, spin)
     return spin
 
@@ -72,8 +78,10 @@ def vorticity_of_levels(water, dx):
 def project_on_polyline(points, line):
     """Nearest points on a polyline in the plane.
 
-    points (n, 2), line (m, 2). Returns the distance (n,), the side (n,) of +1 left of the line's direction or
-    -1 right of it, and the place (n,) of the nearest point: segment number plus fraction, in [0, m-1].
+    points (n, 2), line (m, 2). Returns the distance (n,), the side (n,) of +1 left of the line's
+    direction or
+    -1 right of it, and the place (n,) of the nearest point: segment number plus fraction, in [0,
+    m-1].
     """
     start, along = line[:-1], np.diff(line, axis=0)
     offset = points[:, None, :] - start[None, :, :]

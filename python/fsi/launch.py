@@ -33,17 +33,21 @@ def mpirun(ranks):
 
 
 def lammps(deck, ranks=1, variables=None, binary=None):
-    """The command line that runs a deck; ranks 0: one process, without the launcher; `variables` maps names to values for LAMMPS' -var."""
-    command = [*(mpirun(ranks) if ranks else ()), str(binary or paths.BUILD / "lmp"), "-in", str(deck), "-log", "log.lammps"]
+    """The command line that runs a deck; ranks 0: one process, without the launcher; `variables`
+    maps names to values for LAMMPS' -var."""
+    command = [*(mpirun(ranks) if ranks else ()), str(binary or paths.BUILD / "lmp"), "-in",
+               str(deck), "-log", "log.lammps"]
     for name, value in (variables or {}).items():
         command += ["-var", name, str(value)]
     return command
 
 
 def callgrind(out, parts=False):
-    """What goes before a command line to count the instructions of LAMMPS' time loop; parts: out.N of each run but the last, which is `out`."""
+    """What goes before a command line to count the instructions of LAMMPS' time loop; parts: out.N
+    of each run but the last, which is `out`."""
     loop = "LAMMPS_NS::Verlet::run(int)"
-    return ["valgrind", "--tool=callgrind", f"--toggle-collect={loop}", f"--callgrind-out-file={out}",
+    return ["valgrind", "--tool=callgrind", f"--toggle-collect={loop}",
+            f"--callgrind-out-file={out}",
             *((f"--dump-before={loop}", "--combine-dumps=no") if parts else ())]
 
 

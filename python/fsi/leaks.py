@@ -1,10 +1,12 @@
-"""Counts particles that are where none may be. Every particle counts once, however long it stays there."""
+"""Counts particles that are where none may be. Every particle counts once, however long it stays
+there."""
 
 import numpy as np
 
 
 class Leaks:
-    """Collects offenders frame by frame. `margin` [m]: how far beyond a wall a particle must be to count."""
+    """Collects offenders frame by frame. `margin` [m]: how far beyond a wall a particle must be to
+    count."""
 
     def __init__(self, margin):
         self.margin = margin
@@ -13,7 +15,8 @@ class Leaks:
         self.last = None
 
     def beyond_walls(self, frame, walls):
-        """Adds particles outside of planes: `walls` lists (column, bound, -1 for a lower or +1 for an upper bound)."""
+        """Adds particles outside of planes: `walls` lists (column, bound, -1 for a lower or +1 for
+        an upper bound)."""
         for name, bound, side in walls:
             self.add(frame, side * (frame[name] - bound) > self.margin)
 
@@ -29,7 +32,8 @@ class Leaks:
         self.last = ids
 
     def count(self, log, outflow=0):
-        """Number of particles that leaked or were lost; `outflow` of those left where they may, which is no loss."""
+        """Number of particles that leaked or were lost; `outflow` of those left where they may,
+        which is no loss."""
         lost = max(len(self.first - self.last), _drop(log)) if self.first else _drop(log)
         return len(self.offenders) + max(0, lost - outflow)
 

@@ -1,6 +1,7 @@
 """Reads log.lammps.
 
-LAMMPS' own reader (lammps/formats.py) has the tables only, of runs that came to their end, and is not there where this package is installed alone.
+LAMMPS' own reader (lammps/formats.py) has the tables only, of runs that came to their end, and is
+not there where this package is installed alone.
 """
 
 import re
@@ -10,12 +11,14 @@ from pathlib import Path
 import numpy as np
 
 _LOOP = re.compile(r"Loop time of (\S+) on (\d+) procs for (\d+) steps with (\d+) atoms")
-_MEMORY = re.compile(r"Per MPI rank memory allocation \(min/avg/max\) = (\S+) \| (\S+) \| (\S+) Mbytes")
+_MEMORY = re.compile(r"Per MPI rank memory allocation \(min/avg/max\) = (\S+) \| (\S+) \| (\S+) "
+                     r"Mbytes")
 _USE = re.compile(r"(\S+)% CPU use with")
 _NEIGHBOURS = re.compile(r"(Neighs|FullNghs):\s+(\S+) ave")
 _BONDS = re.compile(r"\s*fsi/solid/tl: reference of (\d+) particles taken, (\S+) bonds each")
 _SUBSTEPS = re.compile(r"fix\s+\S+\s+\S+\s+fsi\s.*\ssubsteps\s+(\d+)")
-_CHOSEN = re.compile(r"fix\s+(\S+)\s+\S+\s+fsi/dt\s.*\ssubsteps\s+auto")  # their number is in thermo output where that has it
+# their number is in thermo output where that has it
+_CHOSEN = re.compile(r"fix\s+(\S+)\s+\S+\s+fsi/dt\s.*\ssubsteps\s+auto")
 STOP = re.compile(r"fix\s+\S+\s+\S+\s+fsi/dt\s.*\sstop\s+([-+.\deE]+)")
 _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
@@ -25,7 +28,8 @@ _VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
 
 @dataclass
 class Run:
-    """One `run` command: its thermo table and what LAMMPS reports after it (None: it did not get there)."""
+    """One `run` command: its thermo table and what LAMMPS reports after it (None: it did not get
+    there)."""
 
     thermo: dict = field(default_factory=dict)  # column name -> array (rows,)
     loop_seconds: float = None
@@ -34,8 +38,11 @@ class Run:
     atoms: int = None
     bytes_per_rank: float = None  # average over ranks
     cpu_use: float = None  # CPU over wall time in the loop
-    neighbours: int = None  # entries of the half neighbour list at the end, 0 where LAMMPS does not find it (pair style hybrid)
-    full_neighbours: int = None  # of the full one, which total-Lagrangian solids take their reference from
+    # entries of the half neighbour list at the end, 0 where LAMMPS does not find it (pair style
+    # hybrid)
+    neighbours: int = None
+    # of the full one, which total-Lagrangian solids take their reference from
+    full_neighbours: int = None
     builds: int = None  # of the neighbour list
     report: dict = field(default_factory=dict)  # of fix fsi/report: {name: value}
     cost: str = ""  # its text for readers
@@ -61,7 +68,8 @@ class Log:
     substeps: int = 1  # steps of total-Lagrangian solids in each step, as fix fsi is told
     stop: float = None  # time at which fix fsi/dt ends the last run
     chosen: str = None  # column of thermo output with those that fix fsi/dt chooses
-    effects: list = field(default_factory=list)  # the lists of effects that are on, as fix fsi printed them
+    # the lists of effects that are on, as fix fsi printed them
+    effects: list = field(default_factory=list)
 
     @property
     def finished(self):
@@ -74,9 +82,11 @@ class Log:
         return self.substeps if found is None or len(found) == 0 else float(np.mean(found))
 
     def pair_visits(self):
-        """Entries of the neighbour list, each pair once, and bonds of total-Lagrangian solids, from both ends, times (sub-)steps.
+        """Entries of the neighbour list, each pair once, and bonds of total-Lagrangian solids, from
+        both ends, times (sub-)steps.
 
-        Beside such solids LAMMPS counts only a full list of all, less their bonds then. None where it counts nothing.
+        Beside such solids LAMMPS counts only a full list of all, less their bonds then. None where
+        it counts nothing.
         """
         visits = 0.0
         for run in self.finished:
@@ -87,7 +97,8 @@ class Log:
         return visits or None
 
     def column(self, *names):
-        """A thermo column over all runs, by the first of the names that exists; None if none does."""
+        """A thermo column over all runs, by the first of the names that exists; None if none
+        does."""
         for name in names:
             parts = [run.thermo[name] for run in self.runs if name in run.thermo]
             if parts:
@@ -127,7 +138,8 @@ def read(path):
             log.runs[-1].cpu_use = float(match[1]) / 100.0
         elif log.runs and (match := _NEIGHBOURS.match(line)):
             count = max(0, round(float(match[2]) * (log.runs[-1].ranks or 1)))
-            setattr(log.runs[-1], "neighbours" if match[1] == "Neighs" else "full_neighbours", count)
+            setattr(log.runs[-1], "neighbours" if match[1] == "Neighs" else "full_neighbours",
+                    count)
         elif log.runs and (match := _BUILDS.match(line)):
             log.runs[-1].builds = int(match[1])
         elif match := _VERSION.match(line):
@@ -162,7 +174,8 @@ def _blocks(log, text):
     parts = re.split(r"^Per MPI rank memory allocation.*$", text, flags=re.M)[1:]
     for run, part in zip(log.runs, parts):
         run.cost = "".join(re.findall(r"^FSI report: .*\n(?:  .*\n)*", part, re.M))
-        run.times = "".join(re.findall(r"^MPI task timing breakdown:\n(?:.*\|.*\n|-+\n)*", part, re.M))
+        run.times = "".join(re.findall(r"^MPI task timing breakdown:\n(?:.*\|.*\n|-+\n)*", part,
+                                       re.M))
 
 
 def reports(path):

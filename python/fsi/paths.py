@@ -20,12 +20,14 @@ def sources(pattern="*.*"):
 
 def examples():
     """Names of the scenes for users, sorted."""
-    return sorted(path.parent.name for path in EXAMPLES.glob("*/in.*") if path.name == f"in.{path.parent.name}")
+    return sorted(path.parent.name for path in EXAMPLES.glob("*/in.*") if path.name
+                  == f"in.{path.parent.name}")
 
 
 def scenes():
     """Names of all that tools/run takes, sorted: scenes for users and drivers of tests."""
-    drivers = [path.parent.name for path in DRIVERS.glob("*/in.*") if path.name == f"in.{path.parent.name}"]
+    drivers = [path.parent.name for path in DRIVERS.glob("*/in.*") if path.name
+               == f"in.{path.parent.name}"]
     return sorted([*examples(), *drivers])
 
 

@@ -5,15 +5,16 @@ import time
 
 
 class Progress:
-    """Called with what is done, 0 to 1, it says so once a second: on a terminal in one line that renews itself, elsewhere after
-    ten seconds and then each tenth of the way."""
+    """Called with what is done, 0 to 1, it says so once a second: on a terminal in one line that
+    renews itself, elsewhere after ten seconds and then each tenth of the way."""
 
     def __init__(self, what):
         self.what, self.began, self.said, self.tenth = what, time.monotonic(), 0.0, 0
 
     def __call__(self, done):
         spent = time.monotonic() - self.began
-        left = f"{self.what}: {100 * done:.0f} %" + (f", {spent / done - spent:.0f} s left" if done > 0 and done < 1 else "")
+        left = f"{self.what}: {100 * done:.0f} %" + (f", {spent / done - spent:.0f} s left" if done
+                                                     > 0 and done < 1 else "")
         if sys.stderr.isatty():
             if spent - self.said > 1.0:
                 self.said = spent

@@ -1,10 +1,13 @@
-"""Runs the scenes in examples/, and the drivers of tests in unittest/: builds, simulates, analyzes. The command line of tools/run.
+"""Runs the scenes in examples/, and the drivers of tests in unittest/: builds, simulates, analyzes.
+The command line of tools/run.
 
-Each scene is a folder with an analyze.py whose main(folder) writes summary.json and pictures, and a deck, study/in.<scene>. in.<scene> is the same
-in few lines, for users to copy (unittest/scenes/test_plain_decks.py); starters have this one alone.
-One that needs several runs lists them in cases.json, {"CASE": {"variables": {...}, "ranks": N}} with `ranks` optional; after
-them study(folder, {case: its folder}) of analyze.py writes what is said about all of them into the folder above. A case may run
-another scene's deck, with any of its variables and the edits that edits.json names, and it may be one whose failure is a result.
+Each scene is a folder with an analyze.py whose main(folder) writes summary.json and pictures, and a
+deck, study/in.<scene>. in.<scene> is the same in few lines, for users to copy
+(unittest/scenes/test_plain_decks.py); starters have this one alone. One that needs several runs
+lists them in cases.json, {"CASE": {"variables": {...}, "ranks": N}} with `ranks` optional; after
+them study(folder, {case: its folder}) of analyze.py writes what is said about all of them into the
+folder above. A case may run another scene's deck, with any of its variables and the edits that
+edits.json names, and it may be one whose failure is a result.
 """
 
 import difflib
@@ -33,34 +36,46 @@ from .sweep import Deck, deck_variables
 OPTIONS = ("ranks", "out", "case")
 MADE_FILE = ".made-by-tools-run"
 CASES_FILE = "cases.json"
-RANKS = 1  # where nobody says how many: small scenes gain nothing by more, and on a busy machine ranks wait for each other
-EDITS_FILE = "edits.json"  # {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a variable for
-ONE_RUN = {"variables": {}, "ranks": None, "deck": None, "may_fail": False}  # of a scene without cases
-OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
-SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools", "bench", "unittest/hard")  # what decides a result
+# where nobody says how many: small scenes gain nothing by more, and on a busy machine ranks wait
+# for each other
+RANKS = 1
+# {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a
+# variable for
+EDITS_FILE = "edits.json"
+# of a scene without cases
+ONE_RUN = {"variables": {}, "ranks": None, "deck": None, "may_fail": False}
+# folder of a run with the user's variables beside the cases, whose results stay as they are
+OWN_RUN = "custom"
+# what decides a result
+SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools", "bench", "unittest/hard")
 
 
 def deck(scene):
-    """The scene's input file with the settings that sweeps and tests need: that in study/ where there is one."""
+    """The scene's input file with the settings that sweeps and tests need: that in study/ where
+    there is one."""
     folder = paths.folder(scene)
     study = folder / "study" / f"in.{scene}"
     return study if study.exists() else folder / f"in.{scene}"
 
 
 def cases(scene):
-    """The runs that make up a scene, {case: {"variables", "ranks", "deck", "may_fail"}}; {} if it is one run."""
+    """The runs that make up a scene, {case: {"variables", "ranks", "deck", "may_fail"}}; {} if it
+    is one run."""
     path = paths.folder(scene) / CASES_FILE
     if not path.exists():
         return {}
     try:
-        found = {name: {"variables": {k: str(v) for k, v in case.get("variables", {}).items()}, "ranks": case.get("ranks"),
+        found = {name: {"variables": {k: str(v) for k, v in case.get("variables", {}).items()},
+                        "ranks": case.get("ranks"),
                         "deck": case.get("deck"), "may_fail": bool(case.get("may_fail"))}
                  for name, case in json.loads(path.read_text()).items()}
     except (ValueError, AttributeError) as error:
-        raise Refusal(f"{path} is not of the form {{\"CASE\": {{\"variables\": {{...}}}}}}: {error}") from None
+        raise Refusal(
+            f"{path} is not of the form {{\"CASE\": {{\"variables\": {{...}}}}}}: {error}") from None
     for name, case in found.items():
         if not re.fullmatch(r"\w[\w.+-]*", name) or name == OWN_RUN:
-            raise Refusal(f"{path}: '{name}' cannot be a case, since it has to be the name of a folder")
+            raise Refusal(f"{path}: '{name}' cannot be a case, since it has to be the name of a "
+                          "folder")
         if case["ranks"] is not None and (not isinstance(case["ranks"], int) or case["ranks"] < 1):
             raise Refusal(f"{path}: ranks of '{name}' must be a whole number, 1 or more")
         try:
@@ -90,7 +105,8 @@ def parse(arguments):
 
 
 def check(scene, variables):
-    """Refuses a scene or a variable that does not exist, and words where the deck's default is a number."""
+    """Refuses a scene or a variable that does not exist, and words where the deck's default is a
+    number."""
     if scene not in scenes():
         listed = ", ".join(scenes()) or "none"
         raise Refusal(f"there is no scene '{scene}'{_similar(scene, scenes())}. Scenes: {listed}")
@@ -99,15 +115,18 @@ def check(scene, variables):
         if name not in known:
             listed = ", ".join(f"{n}={default}" for n, default in known.items()) or "none"
             raise Refusal(f"{scene} has no variable '{name}'{_similar(name, [*known, *OPTIONS])}. "
-                          f"Its variables and their defaults: {listed}. Options: ranks=N, out=FOLDER, case=NAME")
+                          f"Its variables and their defaults: {listed}. Options: ranks=N, "
+                          "out=FOLDER, case=NAME")
         if _is_number(known[name]) and not _is_number(value):
             raise Refusal(f"{name}={value}: a number is needed, such as the default {known[name]}")
 
 
 def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=False):
-    """Simulates and analyses a scene in `folder`; returns 0 if all went well, else LAMMPS' exit status or 1.
+    """Simulates and analyses a scene in `folder`; returns 0 if all went well, else LAMMPS' exit
+    status or 1.
 
-    borrowed: name of the scene whose deck is run; may_fail: a run that LAMMPS ends with an error is analysed, too.
+    borrowed: name of the scene whose deck is run; may_fail: a run that LAMMPS ends with an error is
+    analysed, too.
     """
     folder = Path(folder)
     with _record(folder):
@@ -125,36 +144,43 @@ def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=Fals
                 _report(folder)
                 return status
         _write_run(folder, {"scene": scene, **({"case": case} if case else {}), "ranks": ranks,
-                            "cpu_seconds": round(seconds, 3), "given": variables, **({"status": status} if status else {}),
+                            "cpu_seconds": round(seconds, 3), "given": variables,
+                            **({"status": status} if status else {}),
                             "variables": {**deck_variables(path), **variables}})
         module = analysis(scene)
         good = module is None or _calls(module.main, folder)
         _report(folder)
         if good:
-            for line in dict.fromkeys(log.read(folder / "log.lammps").warnings):  # far up among LAMMPS' own lines by now
+            # far up among LAMMPS' own lines by now
+            for line in dict.fromkeys(log.read(folder / "log.lammps").warnings):
                 print(f"run: {line}")
-            print(f"run: figures, pictures and log are in {folder}; all on one page: {folder / report.OUT}", flush=True)
+            print(f"run: figures, pictures and log are in {folder}; all on one page: "
+                  f"{folder / report.OUT}", flush=True)
         return 0 if good else 1
 
 
 def run_cases(scene, folder, ranks=None):
-    """Runs every case of a scene in a folder of its own below `folder`, then the study of those that ran.
+    """Runs every case of a scene in a folder of its own below `folder`, then the study of those
+    that ran.
 
-    `ranks` overrides what the cases say. Returns 0 if all of it went well; a case that fails does not stop the others.
+    `ranks` overrides what the cases say. Returns 0 if all of it went well; a case that fails does
+    not stop the others.
     """
     folder = Path(folder)
     wanted = cases(scene)
     ran = []
     for k, (name, case) in enumerate(wanted.items(), start=1):
         print(f"run: {scene}, case {name} ({k} of {len(wanted)})", flush=True)
-        if run(scene, folder / name, ranks or case["ranks"] or RANKS, case["variables"], name, case["deck"],
+        if run(scene, folder / name, ranks or case["ranks"] or RANKS, case["variables"], name,
+               case["deck"],
                case["may_fail"]) == 0:
             ran.append(name)
     return study(scene, folder, list(wanted), ran)
 
 
 def study(scene, folder, wanted, ran):
-    """What is said about all cases of a scene, of those that ran; returns 0 if these are all and the analysis came to its end."""
+    """What is said about all cases of a scene, of those that ran; returns 0 if these are all and
+    the analysis came to its end."""
     with _record(folder):
         failed = [name for name in wanted if name not in ran]
         _write_run(folder, {"scene": scene, "cases": ran, "failed": failed})
@@ -169,14 +195,18 @@ def study(scene, folder, wanted, ran):
 
 
 def run_all(names, folder, ranks=None):
-    """Runs all cases of these scenes, as many side by side as there are cores, the longest first; returns the scenes of which something failed.
+    """Runs all cases of these scenes, as many side by side as there are cores, the longest first;
+    returns the scenes of which something failed.
 
-    `ranks` overrides what the cases say; those on several ranks come last. What an earlier call left at this commit is not run again.
+    `ranks` overrides what the cases say; those on several ranks come last. What an earlier call
+    left at this commit is not run again.
     """
     folder = Path(folder)
     wanted = {scene: cases(scene) for scene in names}
-    tasks = [(scene, folder / scene / (name or ""), ranks or case["ranks"] or RANKS, case["variables"], name, case["deck"], case["may_fail"])
-             for scene, found in wanted.items() for name, case in (found or {None: ONE_RUN}).items()]
+    tasks = [(scene, folder / scene / (name or ""), ranks or case["ranks"] or RANKS,
+              case["variables"], name, case["deck"], case["may_fail"])
+             for scene, found in wanted.items()
+             for name, case in (found or {None: ONE_RUN}).items()]
     now = commit()
     good = {task[1] for task in tasks if _is_there(task, now)}
     todo = [task for task in tasks if task[1] not in good]
@@ -188,7 +218,8 @@ def run_all(names, folder, ranks=None):
         print(f"run: {len(good)} of {len(tasks)} runs are there, of this commit", flush=True)
     began, k, sum_of_done, left = time.monotonic(), len(good), 0.0, sum(estimates.values())
     for on, some in groupby(todo, key=lambda task: task[2]):
-        with ProcessPoolExecutor(max(1, launch.cores() // on), mp_context=get_context("fork")) as pool:
+        with ProcessPoolExecutor(max(1, launch.cores() // on),
+                                 mp_context=get_context("fork")) as pool:
             running = {pool.submit(_apart, task): task for task in some}
             for future in as_completed(running):
                 scene, place, _, _, name, *_ = running[future]
@@ -201,8 +232,10 @@ def run_all(names, folder, ranks=None):
                 sum_of_done += estimates[place]
                 left -= estimates[place]
                 spent = time.monotonic() - began
-                print(f"run: {k} of {len(tasks)}: {' '.join(filter(None, (scene, name)))} {'took' if status == 0 else 'FAILED after'} {seconds:.0f} s; "
-                      f"{spent / 60:.0f} minutes, some {spent * left / sum_of_done / 60:.0f} left", flush=True)
+                print(f"run: {k} of {len(tasks)}: {' '.join(filter(None, (scene, name)))} "
+                      f"{'took' if status == 0 else 'FAILED after'} {seconds:.0f} s; "
+                      f"{spent / 60:.0f} minutes, some {spent * left / sum_of_done / 60:.0f} left",
+                      flush=True)
     failed = []
     for scene, found in wanted.items():
         ran = [name for name in found if folder / scene / name in good]
@@ -232,11 +265,13 @@ def _is_there(task, now):
 
 
 def left(scene, case):
-    """The folder in which tools/run left a case of this commit on one core, its own deck whole; None if it did not."""
+    """The folder in which tools/run left a case of this commit on one core, its own deck whole;
+    None if it did not."""
     found = cases(scene)[case]
     folder = paths.RESULTS / scene / case
     task = (scene, folder, RANKS, found["variables"], case)
-    return folder if not found["deck"] and not found["may_fail"] and _is_there(task, commit()) else None
+    return folder if not found["deck"] and not found["may_fail"] and _is_there(task,
+                                                                               commit()) else None
 
 
 def _seconds_of_page():
@@ -262,7 +297,8 @@ def analysis(scene):
 
 
 def _calls(function, *arguments):
-    """Whether an analysis comes to its end; if not, says why, so that what else is to be run can go on."""
+    """Whether an analysis comes to its end; if not, says why, so that what else is to be run can go
+    on."""
     try:
         function(*arguments)
     except SystemExit as refusal:  # what the analysis has to say, in its own words
@@ -291,7 +327,8 @@ def _record(folder):
         yield
     finally:
         # what is noted further down is that folder's own business
-        below = {str(path.parent.relative_to(folder)) for path in folder.rglob(MADE_FILE) if path.parent != folder}
+        below = {str(path.parent.relative_to(folder)) for path in folder.rglob(MADE_FILE)
+                 if path.parent != folder}
         made = [name for name in sorted(_files(folder) - before - {MADE_FILE})
                 if not any(str(parent) in below for parent in Path(name).parents)]
         (folder / MADE_FILE).write_text("".join(f"{name}\n" for name in made))
@@ -299,40 +336,51 @@ def _record(folder):
 
 def _write_run(folder, record):
     """run.json: what was run, for the summary."""
-    (folder / RUN_FILE).write_text(json.dumps({**record, "commit": commit(), "date": date.today().isoformat()}, indent=2) + "\n")
+    (folder / RUN_FILE).write_text(
+        json.dumps({**record, "commit": commit(), "date": date.today().isoformat()}, indent=2)
+        + "\n")
 
 
 def commit():
-    """The commit that is checked out, "+" behind it where sources differ from it; None without git."""
+    """The commit that is checked out, "+" behind it where sources differ from it; None without
+    git."""
     def git(*words):
-        return subprocess.run(["git", "-C", str(paths.ROOT), *words], capture_output=True, text=True, check=True).stdout
+        return subprocess.run(["git", "-C", str(paths.ROOT), *words], capture_output=True,
+                              text=True, check=True).stdout
     try:
-        return git("rev-parse", "--short=10", "HEAD").strip() + ("+" if git("status", "--porcelain", *SOURCES) else "")
+        return git("rev-parse", "--short=10",
+                   "HEAD").strip() + ("+" if git("status", "--porcelain", *SOURCES) else "")
     except (OSError, subprocess.CalledProcessError):
         return None
 
 
 def _simulate(path, folder, ranks, variables):
-    """Runs LAMMPS, its output going to the terminal; returns (status, CPU seconds per rank, last lines)."""
+    """Runs LAMMPS, its output going to the terminal; returns (status, CPU seconds per rank, last
+    lines)."""
     command = launch.lammps(Path(path).resolve(), ranks, variables)
     started = time.perf_counter()
     tail = []
     with subprocess.Popen(command, cwd=folder, env=launch.environment(), stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as process:
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace") as process:
         for line in process.stdout:
             print(line, end="", flush=True)
             tail = [*tail[-199:], line.rstrip()]
-        _, status, usage = os.wait4(process.pid, 0)  # what it waited for included: the ranks of mpirun
+        # what it waited for included: the ranks of mpirun
+        _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
     seconds = (usage.ru_utime + usage.ru_stime) / ranks
-    print(f"run: LAMMPS took {time.perf_counter() - started:.1f} s, {seconds:.1f} s of CPU time on each core", flush=True)
+    print(f"run: LAMMPS took {time.perf_counter() - started:.1f} s, {seconds:.1f} s of CPU time on "
+          "each core", flush=True)
     return process.returncode, seconds, tail
 
 
 def _explain(folder, status, output):
     """Says why LAMMPS failed, in its own words."""
-    errors = list(dict.fromkeys(line for line in output if "ERROR" in line or line.startswith("Last ")))
-    print(f"\nrun: LAMMPS failed (status {status}); the log is {folder / 'log.lammps'}", file=sys.stderr)
+    errors = list(dict.fromkeys(line for line in output if "ERROR" in line
+                                or line.startswith("Last ")))
+    print(f"\nrun: LAMMPS failed (status {status}); the log is {folder / 'log.lammps'}",
+          file=sys.stderr)
     for line in errors or output[-5:]:
         print(f"  {line}", file=sys.stderr)
 
@@ -391,7 +439,8 @@ def build():
 
 
 def _job(scene, options, variables):
-    """What the command line asks of a scene, checked, as a function without arguments that returns an exit status."""
+    """What the command line asks of a scene, checked, as a function without arguments that returns
+    an exit status."""
     check(scene, variables)
     known = cases(scene)
     ranks = options.get("ranks")
@@ -404,7 +453,8 @@ def _job(scene, options, variables):
         return lambda: run(scene, folder / below, ranks or RANKS, variables)
     name = options["case"]
     if name not in known:
-        raise Refusal(f"{scene} has no case '{name}'{_similar(name, known)}. Its cases: {', '.join(known) or 'none'}")
+        raise Refusal(f"{scene} has no case '{name}'{_similar(name, known)}. Its cases: "
+                      f"{', '.join(known) or 'none'}")
     if variables:
         raise Refusal("case= sets the variables: give either it or NAME=VALUE")
     return lambda: run(scene, folder / name if out is None else folder,

@@ -54,34 +54,40 @@ def read(path):
 
 
 def rms_distance(series, name, reference, reference_name, tolerance=1e-3):
-    """Root mean square distance of a series to reference points, those beyond the series' end left out.
+    """Root mean square distance of a series to reference points, those beyond the series' end left
+    out.
 
-    A point at most `tolerance` [s] outside of the series is compared with its end, since the last line of a
-    `fix print` may lie one interval before the end of the run.
+    A point at most `tolerance` [s] outside of the series is compared with its end, since the last
+    line of a `fix print` may lie one interval before the end of the run.
     """
     times = reference.time
     inside = (times >= series.time[0] - tolerance) & (times <= series.time[-1] + tolerance)
     if not inside.any():
         return None
     clipped = np.clip(times[inside], series.time[0], series.time[-1])
-    return float(np.sqrt(np.mean((series.at(name, clipped) - reference[reference_name][inside]) ** 2)))
+    return float(
+        np.sqrt(np.mean((series.at(name, clipped) - reference[reference_name][inside]) ** 2)))
 
 
 def smooth(time, values, width):
-    """Running mean over `width` [s], for equal steps of time; at the ends the first and last values go on."""
+    """Running mean over `width` [s], for equal steps of time; at the ends the first and last values
+    go on."""
     n = max(1, round(width / (time[1] - time[0])))
-    return np.convolve(np.pad(values, (n // 2, n - 1 - n // 2), mode="edge"), np.full(n, 1.0 / n), mode="valid")
+    return np.convolve(np.pad(values, (n // 2, n - 1 - n // 2), mode="edge"), np.full(n, 1.0 / n),
+                       mode="valid")
 
 
 def frequency(time, values):
-    """Where the spectrum is highest: Hann window, mean removed, the peak between the bins; at least two periods are needed."""
+    """Where the spectrum is highest: Hann window, mean removed, the peak between the bins; at least
+    two periods are needed."""
     n = len(time)
     even = np.linspace(time[0], time[-1], n)
     values = np.interp(even, time, values)
     window = np.hanning(n)
     size = np.abs(np.fft.rfft((values - np.average(values, weights=window)) * window, 16 * n))
     rate = np.fft.rfftfreq(16 * n, (even[-1] - even[0]) / (n - 1))
-    k = int(np.argmax(np.where(rate * (even[-1] - even[0]) < 1.5, 0.0, size)))  # below is the window itself
+    # below is the window itself
+    k = int(np.argmax(np.where(rate * (even[-1] - even[0]) < 1.5, 0.0, size)))
     if size[k] == 0.0 or k + 1 >= len(size):
         raise ValueError("there is no frequency in a constant")
     a, b, c = np.log(size[k - 1:k + 2])
@@ -89,10 +95,12 @@ def frequency(time, values):
 
 
 def periodic(time, values, periods=3):
-    """Each of the last whole periods of a signal: {"mean": (max+min)/2, "amplitude": (max-min)/2, "frequency", "count": of all whole periods}.
+    """Each of the last whole periods of a signal: {"mean": (max+min)/2, "amplitude": (max-min)/2,
+    "frequency", "count": of all whole periods}.
 
-    A period goes from one rise through the middle between the extremes of the end to the next; a rise comes from below a quarter of the
-    amplitude under the middle to above a quarter over it, so that noise makes none. None if there is no whole period.
+    A period goes from one rise through the middle between the extremes of the end to the next; a
+    rise comes from below a quarter of the amplitude under the middle to above a quarter over it, so
+    that noise makes none. None if there is no whole period.
     """
     try:
         recent = time >= time[-1] - (periods + 1.0) / frequency(time, values)
@@ -106,9 +114,11 @@ def periodic(time, values, periods=3):
             below = k
         elif value > middle + quarter and below is not None:
             part = slice(below, k + 1)
-            up = np.flatnonzero(np.diff(np.sign(values[part] - middle)))  # through the middle, perhaps to and fro
+            # through the middle, perhaps to and fro
+            up = np.flatnonzero(np.diff(np.sign(values[part] - middle)))
             i = below + up
-            rises.append(np.mean(time[i] + (middle - values[i]) / (values[i + 1] - values[i]) * (time[i + 1] - time[i])))
+            rises.append(np.mean(time[i] + (middle - values[i]) / (values[i + 1] - values[i])
+                                 * (time[i + 1] - time[i])))
             below = None
     if len(rises) < 2:
         return None
@@ -122,8 +132,9 @@ def periodic(time, values, periods=3):
 
 
 def swing(time, values, rate, periods=5, harmonics=4):
-    """(mean, amplitude) of a noisy periodic signal of known frequency over its last whole periods: (max+min)/2 and (max-min)/2 of the
-    harmonics fitted to it by least squares, so that sound between them does not count as `periodic` would have it.
+    """(mean, amplitude) of a noisy periodic signal of known frequency over its last whole periods:
+    (max+min)/2 and (max-min)/2 of the harmonics fitted to it by least squares, so that sound
+    between them does not count as `periodic` would have it.
     """
     periods = min(periods, int((time[-1] - time[0]) * rate + 1e-9))
     if periods < 1:
@@ -132,26 +143,29 @@ def swing(time, values, rate, periods=5, harmonics=4):
     phase = 2.0 * np.pi * rate * np.outer(np.arange(1, harmonics + 1), time[late])
     shapes = np.vstack([np.ones(late.sum()), np.cos(phase), np.sin(phase)])
     weights = np.gradient(time[late])  # steps of time vary
-    fit = np.linalg.lstsq((shapes * np.sqrt(weights)).T, values[late] * np.sqrt(weights), rcond=None)[0]
+    fit = np.linalg.lstsq((shapes * np.sqrt(weights)).T, values[late] * np.sqrt(weights),
+                          rcond=None)[0]
     phase = 2.0 * np.pi * np.outer(np.arange(1, harmonics + 1), np.linspace(0.0, 1.0, 721))
     curve = fit @ np.vstack([np.ones(721), np.cos(phase), np.sin(phase)])
     return 0.5 * (curve.max() + curve.min()), 0.5 * (curve.max() - curve.min())
 
 
 def last_rise(time, values, rate, periods):
-    """When the last `periods` whole periods of a noisy signal of known frequency begin, where its fundamental rises through its mean."""
+    """When the last `periods` whole periods of a noisy signal of known frequency begin, where its
+    fundamental rises through its mean."""
     late = time >= time[-1] - periods / rate
     phase = 2.0 * np.pi * rate * time[late]
     weights = np.gradient(time[late])
     shapes = np.vstack([np.ones(late.sum()), np.cos(phase), np.sin(phase)])
-    _, a, b = np.linalg.lstsq((shapes * np.sqrt(weights)).T, values[late] * np.sqrt(weights), rcond=None)[0]
+    _, a, b = np.linalg.lstsq((shapes * np.sqrt(weights)).T, values[late] * np.sqrt(weights),
+                              rcond=None)[0]
     rise = -np.arctan2(a, b) / (2.0 * np.pi * rate)
     return float(rise + np.floor((time[-1] - rise) * rate - periods) / rate)
 
 
 def still_moving(time, values):
-    """Share of its range by which a column went on in the last tenth of the time, if it is farthest from where it began there: it has
-    neither swung back nor come to rest. None if it has.
+    """Share of its range by which a column went on in the last tenth of the time, if it is farthest
+    from where it began there: it has neither swung back nor come to rest. None if it has.
     """
     late = np.flatnonzero(time >= time[-1] - 0.1 * (time[-1] - time[0]))
     farthest = int(np.argmax(np.abs(values - values[0])))
@@ -161,16 +175,19 @@ def still_moving(time, values):
 
 
 def steady(time, values, blocks=8):
-    """(mean over time, its standard error by means of blocks, change from the first half to the second) of a column at uneven times."""
+    """(mean over time, its standard error by means of blocks, change from the first half to the
+    second) of a column at uneven times."""
     edges = np.linspace(time[0], time[-1], blocks + 1)
     whole = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))])
     means = np.diff(np.interp(edges, time, whole)) / np.diff(edges)
     half = blocks // 2
-    return float(means.mean()), float(means.std(ddof=1) / np.sqrt(blocks)), float(means[half:].mean() - means[:half].mean())
+    return float(means.mean()), float(means.std(ddof=1) / np.sqrt(blocks)), float(
+        means[half:].mean() - means[:half].mean())
 
 
 def read_ave(path):
-    """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps, rows)."""
+    """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps,
+    rows)."""
     titles, data = [], []
     lines = Path(path).read_text().splitlines()
     if not lines or not lines[0].startswith("# Time-averaged"):
@@ -198,7 +215,8 @@ def read_ave(path):
         blocks.append([row[1:] for row in block])
         k += 1 + rows
     table = np.array(blocks)  # (steps, rows, columns)
-    return Series({"TimeStep": np.array(steps), **{name: table[:, :, k] for k, name in enumerate(names)}})
+    return Series({"TimeStep": np.array(steps),
+                   **{name: table[:, :, k] for k, name in enumerate(names)}})
 
 
 def read_any(path):
@@ -210,5 +228,7 @@ def read_any(path):
 
 def rows(columns):
     """Columns of mode vector as one column per row: NAME[1], NAME[2] ..."""
-    return {name if values.ndim == 1 else f"{name}[{k + 1}]": values if values.ndim == 1 else values[:, k]
-            for name, values in columns.items() for k in range(1 if values.ndim == 1 else values.shape[1])}
+    return {name if values.ndim == 1 else f"{name}[{k + 1}]": values if values.ndim == 1
+            else values[:, k]
+            for name, values in columns.items()
+            for k in range(1 if values.ndim == 1 else values.shape[1])}

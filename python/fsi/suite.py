@@ -1,6 +1,7 @@
 """Runs all tests and adds them up. The command line of tools/test.
 
-GoogleTest for the mathematics, pytest for the rest, the same scenes under other builds, and line coverage.
+GoogleTest for the mathematics, pytest for the rest, the same scenes under other builds, and line
+coverage.
 """
 
 import os
@@ -13,18 +14,22 @@ from xml.etree import ElementTree
 
 from . import launch, paths
 
-# What --quick and the line coverage leave out of unittest/, beside cases marked slow: scenes, whose equations the tests of the styles look at one
-# by one; what runs tools, installs, builds or counts instructions, to which an instrumented build adds its own
+# What --quick and the line coverage leave out of unittest/, beside cases marked slow: scenes, whose
+# equations the tests of the styles look at one by one; what runs tools, installs, builds or counts
+# instructions, to which an instrumented build adds its own
 SLOW = ["scenes", "pairs", "tools", "docs", "styles/test_fuzz.py", "styles/test_faults.py"]
 
 
 def googletest():
-    """(passed, failed) of the GoogleTest cases that the build registered with ctest; (0, 0) if it has none."""
+    """(passed, failed) of the GoogleTest cases that the build registered with ctest; (0, 0) if it
+    has none."""
     if not (paths.BUILD / "CTestTestfile.cmake").exists():
         return 0, 0
-    command = ["ctest", "--test-dir", str(paths.BUILD), "--output-on-failure", "--progress", "-j", str(launch.cores())]
+    command = ["ctest", "--test-dir", str(paths.BUILD), "--output-on-failure", "--progress", "-j",
+               str(launch.cores())]
     lines = []
-    with subprocess.Popen(command, env=launch.environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    with subprocess.Popen(command, env=launch.environment(), stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT,
                           text=True, errors="replace") as process:
         for line in process.stdout:
             lines.append(line)
@@ -38,15 +43,21 @@ def googletest():
 
 
 def pytest(arguments):
-    """(passed, failed) of the tests in unittest/; an error in collecting or setting up counts as a failure."""
+    """(passed, failed) of the tests in unittest/; an error in collecting or setting up counts as a
+    failure."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        # tests side by side, since most run on one core; those that share what a fixture has run stay together (unittest/conftest.py). Long ones first
-        tests = [str(paths.ROOT / "unittest" / name) for name in ("tools", "scenes", "docs", "pairs", "styles")]
-        tests = [test for test in tests if f"--ignore={test}" not in arguments]  # pytest would collect what it is given, ignored or not
-        command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadgroup", f"--junitxml={report}",
+        # tests side by side, since most run on one core; those that share what a fixture has run
+        # stay together (unittest/conftest.py). Long ones first
+        tests = [str(paths.ROOT / "unittest" / name)
+                 for name in ("tools", "scenes", "docs", "pairs", "styles")]
+        # pytest would collect what it is given, ignored or not
+        tests = [test for test in tests if f"--ignore={test}" not in arguments]
+        command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist",
+                   "loadgroup", f"--junitxml={report}",
                    *arguments, *tests]
-        status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(), check=False).returncode
+        status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(),
+                                check=False).returncode
         return outcomes(report, status)
 
 
@@ -77,17 +88,23 @@ def other_builds():
 
 
 def kokkos():
-    """(passed, failed) of the styles with suffix kk, in a LAMMPS with package KOKKOS (tools/kokkos); (0, 0) where none can be made."""
+    """(passed, failed) of the styles with suffix kk, in a LAMMPS with package KOKKOS
+    (tools/kokkos); (0, 0) where none can be made."""
     tool = str(paths.ROOT / "tools" / "kokkos")
     if subprocess.run([tool, "--possible"], check=False).returncode:
         return 0, 0
-    build = paths.ROOT / "build-kokkos-test"  # few styles, less optimized: compiling takes half the time, and the tests are short
+    # few styles, less optimized: compiling takes half the time, and the tests are short
+    build = paths.ROOT / "build-kokkos-test"
     report = build / "report.xml"  # which that system sees
     report.unlink(missing_ok=True)
-    lammps = subprocess.run([tool, "--lammps"], env={**os.environ, "LAMMPS_SOURCE_DIR": ""}, stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+    lammps = subprocess.run([tool, "--lammps"], env={**os.environ, "LAMMPS_SOURCE_DIR": ""},
+                            stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
     options = {"FSI_KOKKOS_BUILD": str(build), "FSI_CMAKE_OPTIONS": "-DCMAKE_CXX_FLAGS_RELEASE=-O1",
-               "LAMMPS_SOURCE_DIR": str(variants().with_few_styles(Path(lammps), build / "few-styles"))}
-    status = subprocess.run([tool, "--test", "-q", "-n", str(launch.cores()), f"--junitxml={report}"], env={**os.environ, **options}, check=False).returncode
+               "LAMMPS_SOURCE_DIR": str(
+                   variants().with_few_styles(Path(lammps), build / "few-styles"))}
+    status = subprocess.run([tool, "--test", "-q", "-n", str(launch.cores()),
+                             f"--junitxml={report}"], env={**os.environ, **options},
+                            check=False).returncode
     return outcomes(report, status)
 
 
@@ -97,13 +114,16 @@ def quick():
 
 
 def coverage():
-    """(1, 0) if one case of each quick test passes, and these execute enough of src/FSI (tools/coverage)."""
-    good = subprocess.run([str(paths.ROOT / "tools" / "coverage"), "--last-case", *quick()], check=False).returncode == 0
+    """(1, 0) if one case of each quick test passes, and these execute enough of src/FSI
+    (tools/coverage)."""
+    good = subprocess.run([str(paths.ROOT / "tools" / "coverage"), "--last-case", *quick()],
+                          check=False).returncode == 0
     return int(good), int(not good)
 
 
 def main(arguments):
-    """Runs everything, or with --quick or pytest's options only GoogleTest and pytest; the last line is the sum."""
+    """Runs everything, or with --quick or pytest's options only GoogleTest and pytest; the last
+    line is the sum."""
     if "--quick" in arguments:
         arguments = [*(a for a in arguments if a != "--quick"), *quick()]
     results = [googletest(), pytest(arguments)]

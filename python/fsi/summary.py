@@ -11,10 +11,11 @@ LOG_FILE = "log.lammps"
 
 
 class Summary:
-    """The figures of the run in `folder`: what was measured about the run itself, and what `add` is given.
+    """The figures of the run in `folder`: what was measured about the run itself, and what `add` is
+    given.
 
-    In a study's folder, which has no log but holds the folders of its cases, `cases` are their summaries by name, and
-    size and cost are summed over them.
+    In a study's folder, which has no log but holds the folders of its cases, `cases` are their
+    summaries by name, and size and cost are summed over them.
     """
 
     def __init__(self, folder):
@@ -26,18 +27,22 @@ class Summary:
         if (self.folder / LOG_FILE).exists():
             self.log = lammps_log.read(self.folder / LOG_FILE)
         else:
-            names = self.run.get("cases") or [path.parent.name for path in sorted(self.folder.glob("*/summary.json"))]
-            self.cases = {name: json.loads((self.folder / name / "summary.json").read_text()) for name in names}
+            names = (self.run.get("cases")
+                     or [path.parent.name for path in sorted(self.folder.glob("*/summary.json"))])
+            self.cases = {name: json.loads((self.folder / name / "summary.json").read_text())
+                          for name in names}
             if not self.cases:
-                raise FileNotFoundError(f"{self.folder} has neither {LOG_FILE} nor folders with a summary.json")
+                raise FileNotFoundError(
+                    f"{self.folder} has neither {LOG_FILE} nor folders with a summary.json")
 
     def add(self, name, value, unit="", reference=None, source=None, target=None):
-        """Adds a figure; `reference` is the published value in the same unit, `source` says whose, its kind first (results.KINDS).
+        """Adds a figure; `reference` is the published value in the same unit, `source` says whose,
+        its kind first (results.KINDS).
 
         The relative error is positive where the size of the value is too large.
 
-        `target` is what was set out for: the largest allowed size of the relative error, or, without a reference or
-        with 0 for it, of the value itself.
+        `target` is what was set out for: the largest allowed size of the relative error, or,
+        without a reference or with 0 for it, of the value itself.
         """
         value = _finite(value)
         error = None
@@ -47,19 +52,23 @@ class Summary:
         if target is not None:
             size = error if reference else value
             met = bool(size is not None and abs(size) <= target)
-        self.figures.append({"name": name, "value": value, "unit": unit, "reference": reference, "source": source,
+        self.figures.append({"name": name, "value": value, "unit": unit, "reference": reference,
+                             "source": source,
                              "relative_error": _finite(error), "target": target, "met": met})
 
     def write(self):
         """Writes summary.json, prints it as a table, returns it as a dictionary."""
         cost = self._cost() if self.log else self._cost_of_cases()
-        for name, unit in (("cpu_seconds", "s"), ("particle_steps_per_second", "1/s"), ("bytes_per_particle", "B")):
+        for name, unit in (("cpu_seconds", "s"), ("particle_steps_per_second", "1/s"),
+                           ("bytes_per_particle", "B")):
             self.add(name, cost[name], unit)
-        summary = {"scene": self.run.get("scene", self.folder.name), "figures": self.figures, **cost,
+        summary = {"scene": self.run.get("scene", self.folder.name), "figures": self.figures,
+                   **cost,
                    "commit": self.run.get("commit"), "date": self.run.get("date")}
         if self.cases:
             kept = ("given", "particles", "steps", "ranks", "cpu_seconds")
-            summary["cases"] = {name: {key: case.get(key) for key in kept} for name, case in self.cases.items()}
+            summary["cases"] = {name: {key: case.get(key) for key in kept}
+                                for name, case in self.cases.items()}
             summary["failed_cases"] = self.run.get("failed", [])
         else:
             summary |= {"case": self.run.get("case"), "given": self.run.get("given", {}),
@@ -69,7 +78,8 @@ class Summary:
         return summary
 
     def _cost(self):
-        """Size and speed. The speed is that of the time loop; cpu_seconds is the whole of LAMMPS' run. CPU time, of one rank: what else the machine does hardly counts."""
+        """Size and speed. The speed is that of the time loop; cpu_seconds is the whole of LAMMPS'
+        run. CPU time, of one rank: what else the machine does hardly counts."""
         runs = self.log.finished
         loop = sum(run.cpu_seconds for run in runs)
         work = sum(run.atoms * run.steps for run in runs)
@@ -93,7 +103,8 @@ class Summary:
         cases = list(self.cases.values())
         largest = max(cases, key=lambda case: case["particles"] or 0)
         work, loop, steps, whole = (sum(case[key] or 0 for case in cases)
-                                   for key in ("particle_steps", "loop_seconds", "steps", "cpu_seconds"))
+                                   for key in ("particle_steps", "loop_seconds", "steps",
+                                               "cpu_seconds"))
         return {
             "particles": largest["particles"],
             "steps": steps,
@@ -101,7 +112,8 @@ class Summary:
             "cpu_seconds": whole,
             "loop_seconds": loop,
             "particle_steps": work,
-            **_speed(work, loop, sum(case["loop_seconds"] * (case["ranks"] or 0) for case in cases)),
+            **_speed(work, loop,
+                     sum(case["loop_seconds"] * (case["ranks"] or 0) for case in cases)),
             "bytes_per_particle": largest["bytes_per_particle"],
             "lammps": largest["lammps"],
         }
@@ -117,7 +129,8 @@ def table(summary):
     rows = [("figure", "value", "unit", "reference", "error", "target", "source")]
     for figure in summary["figures"]:
         met = {None: "", True: " met", False: " MISSED"}[figure["met"]]
-        rows.append((figure["name"], number(figure["value"]), figure["unit"], number(figure["reference"], ""),
+        rows.append((figure["name"], number(figure["value"]), figure["unit"],
+                     number(figure["reference"], ""),
                      deviation(figure), bound(figure) + met, figure["source"] or ""))
     widths = [max(len(row[k]) for row in rows) for k in range(7)]
     lines = []
@@ -127,9 +140,11 @@ def table(summary):
         lines.append("  ".join(cells).rstrip())
     lines.insert(1, "-" * max(map(len, lines)))
     lines.append("")
-    size = f"{len(summary['cases'])} cases of up to {summary['particles']}" if "cases" in summary else summary["particles"]
+    size = (f"{len(summary['cases'])} cases of up to {summary['particles']}" if "cases" in summary
+            else summary["particles"])
     lines.append(f"{size} particles, {summary['steps']} steps, {summary['ranks']} ranks, "
-                 f"{number(summary['particle_steps_per_second_per_rank'])} particle-steps per second and rank")
+                 f"{number(summary['particle_steps_per_second_per_rank'])} particle-steps per "
+                 "second and rank")
     return "\n".join(lines)
 
 
@@ -145,7 +160,8 @@ def bound(figure):
     """A figure's target as text; empty if it has none."""
     if figure["target"] is None:
         return ""
-    return f"{100 * figure['target']:.3g} %" if figure["reference"] else f"{figure['target']:.4g} {figure['unit']}".strip()
+    return (f"{100 * figure['target']:.3g} %" if figure["reference"]
+            else f"{figure['target']:.4g} {figure['unit']}".strip())
 
 
 def _finite(value):

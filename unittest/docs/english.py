@@ -1,4 +1,5 @@
-"""What is wrong with the English of a user page. `faults` is a function of the page's text alone."""
+"""What is wrong with the English of a user page. `faults` is a function of the page's text
+alone."""
 
 import re
 
@@ -6,24 +7,29 @@ LINE = 160      # characters of a line outside of tables
 MEAN = 22       # words of a mean sentence: a page must be below
 LONGEST = 45    # words of any sentence
 
-_NUMBER = (r"(?:\d+|n|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fourteen|fifteen|sixteen|twenty|thirty|forty|fifty|"
-           r"particles?|rows?|spacings?)")
+_NUMBER = (
+    r"(?:\d+|n|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fourteen|fifteen|sixteen|twenty|thirty|forty|fifty|"
+    r"particles?|rows?|spacings?)")
 _BODY = r"(?:flag|plates?|gate|cylinder|baffle|beam|rubber|body|thickness|column|solid)"
-# Words of this house and what a reader of the field expects instead; history of the work, which is for doc/notes
+# Words of this house and what a reader of the field expects instead; history of the work, which is
+# for doc/notes
 HOUSE = (
-    (rf"\b{_NUMBER} across\b|\bacross (?:the|a) {_BODY}\b", "particles through the thickness, or per diameter"),
+    (rf"\b{_NUMBER} across\b|\bacross (?:the|a) {_BODY}\b",
+     "particles through the thickness, or per diameter"),
     (r"\b(?:bears?|bore|borne)\b", "remains stable up to"),
     (r"\bbeside\b", "next to, compared with"),
     (r"\bbut for\b", "except"),
     (r"\bledgers?\b", "energy balance"),
     (r"(?<!fsi/)\bwatch(?:es)?\b", "monitor; the style is fix fsi/watch"),
     (r"\bthe (?:source )?paper\b", "its name"),
-    (r"\bone run each\b|\bother work\b|\buntil today\b|\b(?:older|earlier) commits?\b", "nothing: a user page has no history"),
+    (r"\bone run each\b|\bother work\b|\buntil today\b|\b(?:older|earlier) commits?\b",
+     "nothing: a user page has no history"),
 )
 # Words that save the writer a noun, a verb or a reason, and cost the reader a second look
 COMPRESSED = (
     (r"\b(?:that|those) of\b", "name the thing again, or a genitive"),
-    (r", too\b(?! (?:high|low|few|many|much|far|fast|slow|large|small|soft|stiff|thin|thick|short|long|late|early)\b)", "also"),
+    (r", too\b(?! "
+     r"(?:high|low|few|many|much|far|fast|slow|large|small|soft|stiff|thin|thick|short|long|late|early)\b)", "also"),
     (r"\banew\b", "again"),
     (r"\bgo(?:es)? with(?:out)?\b(?! fix F)", "can, cannot be combined with"),
     (r"\bcomes? around\b", "re-enters"),
@@ -31,13 +37,16 @@ COMPRESSED = (
     (r"\bsome \d", "about"),
     (r"%\)? off\b", "an error of ... %"),
     (r"\bstruck\b|\bstrikes?\b", "hit"),
-    (r"\b(?:merging|splitting|shifting|damping|spacing|tool|scene|script) takes\b", "a verb of what happens"),
+    (r"\b(?:merging|splitting|shifting|damping|spacing|tool|scene|script) takes\b",
+     "a verb of what happens"),
     (r"(?<!\.\.[ ])\bdecks?\b", "input script"),
     (r"\bthe article's scheme\b", "the original scheme"),
     (r"\bWhat (?:naming|is not named|goes)\b", "each optional effect; cannot be combined"),
 )
-_ISE = ("organ real recogn normal initial minim maxim optim summar vector digit stabil discret parametr visual parallel linear standard penal symmetr "
-        "general special emphas util categor synchron local central neutral equal polar crystal fluid character").split()
+_ISE = ("organ real recogn normal initial minim maxim optim summar vector digit stabil discret "
+        "parametr visual parallel linear standard penal symmetr "
+        "general special emphas util categor synchron local central neutral equal polar crystal "
+        "fluid character").split()
 _BRITISH = (
     r"neighbour\w*|colour\w*|behaviour\w*|favour\w*|honour\w*|labour\w*|vapour\w*|rigour|endeavour\w*|armour|harbour\w*|"
     r"cent(?:re|res|red|ring)|(?:kilo|centi|milli|micro|nano)?met(?:re|res)|lit(?:re|res)|fib(?:re|res)|theatres?|sabre|calibre|"
@@ -47,7 +56,8 @@ _BRITISH = (
     rf"(?:{'|'.join(_ISE)})is(?:e|es|ed|ing|ation|ations)")
 HASH = r"\b(?=[0-9a-f]*[0-9])(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b"
 _SHORT = r"\b(?:e\.g|i\.e|et al|vs|cf|approx|resp|Fig|Figs|Eq|Eqs|No|Sec|Mr|Dr|art|vol|pp|[A-Z])\."
-_SILENT = "code-block|math|parsed-literal|index|list-table|table|csv-table|image|figure|toctree|raw|literalinclude|include|role|meta|only"
+_SILENT = (
+    "code-block|math|parsed-literal|index|list-table|table|csv-table|image|figure|toctree|raw|literalinclude|include|role|meta|only")
 
 
 def faults(text, markup="md", house=HOUSE + COMPRESSED):
@@ -60,10 +70,13 @@ def faults(text, markup="md", house=HOUSE + COMPRESSED):
     found += [f"a commit's hash: {word}" for word in re.findall(HASH, text)]
     found += [f"the mark {mark}" for mark in re.findall(r"\(\\?\*\)", text)]
     for pattern, instead in house:
-        found += [f"'{_space(match[0])}': {instead}" for match in re.finditer(pattern.replace(" ", r"\s+"), plain, re.I)]
-    found += [f"'{match[0]}': American spelling" for match in re.finditer(rf"\b(?:{_BRITISH})\b", plain, re.I)]
+        found += [f"'{_space(match[0])}': {instead}"
+                  for match in re.finditer(pattern.replace(" ", r"\s+"), plain, re.I)]
+    found += [f"'{match[0]}': American spelling"
+              for match in re.finditer(rf"\b(?:{_BRITISH})\b", plain, re.I)]
     lengths = [(len(words(s)), s) for s in sentences(text, markup)]
-    found += [f"a sentence of {length} words: {s[:60]}..." for length, s in lengths if length > LONGEST]
+    found += [f"a sentence of {length} words: {s[:60]}..." for length, s in lengths if length
+              > LONGEST]
     counted = [length for length, _ in lengths if length > 3]
     if counted and sum(counted) / len(counted) >= MEAN:
         found.append(f"a mean sentence of {sum(counted) / len(counted):.1f} words")
@@ -71,7 +84,8 @@ def faults(text, markup="md", house=HOUSE + COMPRESSED):
 
 
 def length(text, markup="md"):
-    """Words and numbers of a page, those in tables, too; code in the text counts as one, blocks of code and formulas do not."""
+    """Words and numbers of a page, those in tables, too; code in the text counts as one, blocks of
+    code and formulas do not."""
     return len(words(_plain(text, markup)))
 
 
@@ -80,11 +94,14 @@ def words(sentence):
 
 
 def sentences(text, markup="md"):
-    """Sentences of the running text: no headings, tables, code, formulas, pictures, and no list of references."""
+    """Sentences of the running text: no headings, tables, code, formulas, pictures, and no list of
+    references."""
     found = []
     for block in _blocks(text, markup):
         block = re.sub(_SHORT, lambda m: m[0].replace(".", "\0"), _space(_plain(block, markup)))
-        found += [s.replace("\0", ".") for s in re.split(r"(?<=[.!?])[\"')\]*]*\s+(?=[\"'(\[*]*[A-Z0-9])", block) if words(s)]
+        found += [s.replace("\0", ".")
+                  for s in re.split(r"(?<=[.!?])[\"')\]*]*\s+(?=[\"'(\[*]*[A-Z0-9])", block)
+                  if words(s)]
     return found
 
 
@@ -93,13 +110,17 @@ def _space(text):
 
 
 def _plain(text, markup):
-    """Without code, formulas and targets of links, which are no English; code in the text counts as one word."""
+    """Without code, formulas and targets of links, which are no English; code in the text counts as
+    one word."""
     if markup == "md":
         text = re.sub(r"^```.*?^```[ \t]*$", "", text, flags=re.M | re.S)
         text = re.sub(r"<!--.*?-->|<[^>\n]+>", " ", text, flags=re.S)
         text = re.sub(r"`[^`]+`", "X", text)
         return re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
-    text = re.sub(r"^( *)\.\. (?:code-block|math|parsed-literal|raw|index|image|toctree|csv-table)::.*\n(?:\1 .*\n|[ \t]*\n)*", "", text, flags=re.M)
+    text = re.sub(
+        r"^( *)\.\. "
+        r"(?:code-block|math|parsed-literal|raw|index|image|toctree|csv-table)::.*\n(?:\1 .*\n|[ "
+        r"\t]*\n)*", "", text, flags=re.M)
     text = re.sub(r"``[^`]+``|:math:`[^`]+`", "X", text)
     text = re.sub(r":[\w-]+:`(?:([^`<]*?)\s*<[^`]*>|([^`]*))`", lambda m: m[1] or "X", text)
     return re.sub(r"`([^`<]+)(?:\s*<[^`]*>)?`_+", r"\1", text).replace("\\ ", "").replace("\\", "")
@@ -159,16 +180,19 @@ def _restructured(text):
             continue
         following = lines[k + 1] if k + 1 < len(lines) else ""
         bare = line.strip()
-        heading = bool(bare) and bool(re.match(r"([=\-~^\"'*+#])\1{2,}\s*$", following)) and not re.match(r"[=\-]+ +[=\-]", following)
+        heading = (bool(bare) and bool(re.match(r"([=\-~^\"'*+#])\1{2,}\s*$", following))
+                   and not re.match(r"[=\-]+ +[=\-]", following))
         rule = bool(re.match(r"([=\-~^\"'*+#.])\1{2,}\s*$", bare)) or _within_rules(lines, k)
         directive = re.match(r"\.\. (?:([\w-]+)::)?", bare)
-        if not bare or heading or rule or directive or re.match(r"(?:[-*+]|\d+\.|#\.|:\w+:) ", bare):
+        if not bare or heading or rule or directive or re.match(r"(?:[-*+]|\d+\.|#\.|:\w+:) ",
+                                                                bare):
             found.append(" ".join(block))
             block = []
         if directive:
             if directive[1] is None or re.fullmatch(_SILENT, directive[1]):
                 skip = _indent(line)
             continue
-        if bare and not (heading or rule or re.match(r":[\w-]+:", bare) and not bare.startswith((":doc:", ":math:", ":ref:", ":lammps:"))):
+        if bare and not (heading or rule or re.match(r":[\w-]+:", bare)
+                         and not bare.startswith((":doc:", ":math:", ":ref:", ":lammps:"))):
             block.append(re.sub(r"^(?:[-*+]|\d+\.|#\.) ", "", bare))
     return [b for b in found if b]

@@ -1,4 +1,5 @@
-"""What is here needs LAMMPS with its package KOKKOS: elsewhere it is left out (tools/kokkos --test)."""
+"""What is here needs LAMMPS with its package KOKKOS: elsewhere it is left out (tools/kokkos
+--test)."""
 
 from fsi import paths
 

@@ -1,4 +1,5 @@
-"""The scene of a row of levels: particles, deck, and runs of it in this process or on several ranks."""
+"""The scene of a row of levels: particles, deck, and runs of it in this process or on several
+ranks."""
 
 import re
 import tempfile
@@ -19,8 +20,11 @@ HIGH, DEEP = {2: 12, 3: 7}, 7   # its height and, in 3D, its depth
 STEPS = (16, 12, 12)        # before what is done between runs, after it, and after a restart file
 DT = 2e-4
 SLOTS = {  # what a level may have: how several are joined, what there is if none has it
-    "dim": None, "kernel": None, "full": False, "settings": {}, "body": "", "gravity": "", "ground": None, "sides": None, "floor": None, "ends": "", "refine": "", "stress": "", "water": "",
-    "fluid": " ", "solid": " ", "fsi": " ", "mirror": " ", "material": " ", "lines": "\n", "regions": "\n", "between": "\n", "stays": "\n", "before": "\n"}
+    "dim": None, "kernel": None, "full": False, "settings": {}, "body": "", "gravity": "",
+         "ground": None, "sides": None, "floor": None, "ends": "", "refine": "", "stress": "",
+         "water": "",
+    "fluid": " ", "solid": " ", "fsi": " ", "mirror": " ", "material": " ", "lines": "\n",
+         "regions": "\n", "between": "\n", "stays": "\n", "before": "\n"}
 WATER, BODY, FLOOR, BUOY, FINE, GRAIN, OIL, SOFT = range(1, 9)
 
 
@@ -30,12 +34,14 @@ def turned(text, sign):
     other = {"xlo": "xhi", "xhi": "xlo"}
     text = re.sub(r"<(xlo|xhi)>", lambda m: m[1] if sign > 0 else other[m[1]], text)
     text = re.sub(rf"<({number})>", lambda m: repr(sign * float(m[1])), text)
-    return re.sub(rf"\[({number}) ({number})\]", lambda m: f"{m[1]} {m[2]}" if sign > 0 else f"{-float(m[2])!r} {-float(m[1])!r}", text)
+    return re.sub(rf"\[({number}) ({number})\]", lambda m: f"{m[1]} {m[2]}" if sign > 0
+                  else f"{-float(m[2])!r} {-float(m[1])!r}", text)
 
 
 @dataclass
 class PairScene:
-    """A row as a scene. `sign` -1 mirrors it, `frame` is a velocity added to all, `seed` of an order and numbering other than the usual one."""
+    """A row as a scene. `sign` -1 mirrors it, `frame` is a velocity added to all, `seed` of an
+    order and numbering other than the usual one."""
 
     row: list
     sign: int = 1
@@ -56,7 +62,8 @@ class PairScene:
     def has(self):
         """All slots of the row's levels."""
         found = {slot: {} if slot == "settings" else join or "" for slot, join in SLOTS.items()}
-        found |= {slot: "" if join in (" ", "\n") else None if slot in ("ground", "sides", "floor") else found[slot] for slot, join in SLOTS.items()}
+        found |= {slot: "" if join in (" ", "\n") else None if slot in ("ground", "sides", "floor")
+                  else found[slot] for slot, join in SLOTS.items()}
         found["settings"] = {}
         for level in self.row:
             for slot, value in FACTORS[FACTOR_OF[level]][level].items():
@@ -97,18 +104,23 @@ class PairScene:
 
     @property
     def periodic(self):
-        return not (self.open or self.mirrors and (not self.setting("stream") or self.has["mirror"])), not (self.walled or self.plane), True
+        return (
+            not (self.open or self.mirrors and (not self.setting("stream") or self.has["mirror"])),
+            not (self.walled or self.plane), True)
 
     @property
     def box(self):
         """(3, 2)"""
         x, y, _ = self.periodic
-        top = (0, self.high) if y and self.has["full"] else (-4, self.high + 4) if y else (-8, self.high + 8)
-        return np.array([(-HALF, HALF) if x else (-HALF - 8, HALF + 8), top, (0, DEEP) if self.dim == 3 else (-0.5, 0.5)]) * DX
+        top = (0, self.high) if y and self.has["full"] else (-4, self.high + 4) if y else (
+            -8, self.high + 8)
+        return np.array([(-HALF, HALF) if x else (-HALF - 8, HALF + 8), top,
+                         (0, DEEP) if self.dim == 3 else (-0.5, 0.5)]) * DX
 
     # ---- particles ----
     def block(self, x, y, z=None, dx=DX):
-        """particles of a block with these extents in spacings, z in 3D the whole depth by default"""
+        """particles of a block with these extents in spacings, z in 3D the whole depth by
+        default"""
         z = (0, DEEP) if z is None else z
         ends = np.array([x, y, z][:self.dim], float)
         n = np.round((ends[:, 1] - ends[:, 0]) * DX / dx).astype(int)
@@ -118,8 +130,10 @@ class PairScene:
 
     @property
     def low(self):
-        """where bodies begin, in spacings: at the plane of symmetry, behind a mirror that they are clamped in, or above the ground"""
-        return 0 if self.plane else -3 if self.mirrors and self.setting("held") and not self.setting("all held") else 1 if self.dim == 3 else 2
+        """where bodies begin, in spacings: at the plane of symmetry, behind a mirror that they are
+        clamped in, or above the ground"""
+        return 0 if self.plane else -3 if self.mirrors and self.setting(
+            "held") and not self.setting("all held") else 1 if self.dim == 3 else 2
 
     @property
     def root(self):
@@ -131,7 +145,8 @@ class PairScene:
         if not self.has["body"]:
             return np.zeros((0, 3)), np.zeros(0, int)
         own, wide = self.setting("own", 1.0), self.setting("wide", 4)
-        y, z = (self.low, self.low + (8 if self.dim == 2 else 4) + (2 if self.low < 0 else 0)), (1, 5)
+        y, z = (self.low, self.low + (8 if self.dim == 2 else 4) + (2 if self.low < 0 else 0)), (
+            1, 5)
 
         def one(x, y=y):
             return self.block(x, y, z, own * DX)
@@ -139,13 +154,15 @@ class PairScene:
         if self.setting("hairpin"):
             # in disorder two columns have no quadratic gradient (fsi_gradient.h)
             thick = 3 if "quadratic updated" in self.row else 2
-            x = np.vstack([one((3 - thick, 3)), one((7, 7 + thick)), one((3, 7), (y[0], y[0] + thick))])
+            x = np.vstack([one((3 - thick, 3)), one((7, 7 + thick)),
+                           one((3, 7), (y[0], y[0] + thick))])
         else:
             x = one((1, 1 + wide))
         turn = self.setting("turn", 0)
         if turn:
             about = np.array([3 * DX, self.low * DX, 0])
-            x = about + (x - about) @ np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+            x = about + (x - about) @ np.array([[np.cos(turn), np.sin(turn), 0],
+                                                [-np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
         mol = np.ones(len(x), int)
         if self.setting("bodies") == 2:
             # beside it, a little less than the range of contact from it
@@ -162,31 +179,41 @@ class PairScene:
     def parts(self):
         """(positions, types, molecule IDs)"""
         body, mol = self.bodies()
-        soft = body[:, 1] > (self.low + (4 if self.dim == 2 else 2)) * DX if self.setting("soft") else np.zeros(len(body), bool)
+        soft = body[:, 1] > (self.low + (4 if self.dim == 2 else 2)) * DX if self.setting(
+            "soft") else np.zeros(len(body), bool)
         parts = [(body, np.where(soft, SOFT, BODY), mol)]
         if self.has["floor"] is not None:
-            parts.append((self.block((-HALF - 6, HALF + 6) if self.open else (-HALF, HALF), self.floor_layers), FLOOR, 0))
+            parts.append((self.block((-HALF - 6, HALF + 6) if self.open else (-HALF, HALF),
+                                     self.floor_layers), FLOOR, 0))
         if self.setting("buoy"):
-            x = self.block((-9, -5), (self.high // 2 - 2, self.high // 2 + 2) if self.dim == 2 else (2, 5), (1, 4))
-            parts.append((x, BUOY, np.where(x[:, 0] < -7 * DX, 5, 6) if self.setting("floats") else 0))
+            x = self.block((-9, -5), (self.high // 2 - 2, self.high // 2 + 2) if self.dim == 2
+                           else (2, 5), (1, 4))
+            parts.append((x, BUOY, np.where(x[:, 0] < -7 * DX, 5, 6) if self.setting("floats")
+                          else 0))
         if self.setting("grains"):
             n = self.setting("grains")
             k = np.arange(n)
-            at = np.stack([-10.3 + 3.1 * k + 0.7 * (k > 3), 1.3 + (2.3 * k) % (self.high - 3), 3.3 + 0 * k], 1) * DX
+            at = np.stack([-10.3 + 3.1 * k + 0.7 * (k > 3), 1.3 + (2.3 * k) % (self.high - 3),
+                           3.3 + 0 * k], 1) * DX
             parts.append((at if self.dim == 3 else at * [1, 1, 0], GRAIN, 0))
         water = self.block((-HALF, HALF), (0, self.high))
         for x, type_, _ in parts:
             if type_ is not GRAIN and len(x):
-                water = water[[np.abs(x - w).max(1).min() > 0.6 * DX and np.linalg.norm(x - w, axis=1).min() > 0.75 * DX for w in water]]
-        oil = {None: lambda x, y: x > 1, "beside": lambda x, y: x < -6 * DX, "above": lambda x, y: y > self.high // 2 * DX,
-               "drop": lambda x, y: np.hypot(x + 3 * DX, y - self.high / 2 * DX) < 2.6 * DX}[self.setting("oil")]
+                water = water[[np.abs(x - w).max(1).min() > 0.6 * DX
+                               and np.linalg.norm(x - w, axis=1).min() > 0.75 * DX for w in water]]
+        oil = {None: lambda x, y: x > 1, "beside": lambda x, y: x < -6 * DX,
+               "above": lambda x, y: y > self.high // 2 * DX,
+               "drop": lambda x, y: np.hypot(x + 3 * DX, y - self.high / 2 * DX) < 2.6
+               * DX}[self.setting("oil")]
         parts.insert(0, (water, np.where(oil(water[:, 0], water[:, 1]), OIL, WATER), 0))
-        return (np.vstack([p for p, _, _ in parts]), np.concatenate([np.broadcast_to(t, len(p)) for p, t, _ in parts]),
+        return (np.vstack([p for p, _, _ in parts]),
+                np.concatenate([np.broadcast_to(t, len(p)) for p, t, _ in parts]),
                 np.concatenate([np.broadcast_to(m, len(p)) for p, _, m in parts]))
 
     @cached_property
     def particles(self):
-        """{id, x, v, type, mol, rho, mass} of the scene as it stands, not mirrored, in the usual order"""
+        """{id, x, v, type, mol, rho, mass} of the scene as it stands, not mirrored, in the usual
+        order"""
         random = np.random.default_rng(1)
         x, kind, mol = self.parts()
         held = self.held(x, kind)
@@ -206,20 +233,25 @@ class PairScene:
             v[held] = 0
         v[kind == FLOOR] = 0
         x = x + np.where(fixed[:, None], 0, random.uniform(-0.06, 0.06, x.shape) * size) * flat
-        x[:, 1] = np.where(solids & ~held, np.maximum(x[:, 1], self.root * DX + 1e-5), x[:, 1]) if self.setting("held") else x[:, 1]
+        x[:, 1] = np.where(solids & ~held, np.maximum(x[:, 1], self.root * DX + 1e-5),
+                           x[:, 1]) if self.setting("held") else x[:, 1]
         rho0 = np.array([0, 1000, 1100, 1000, 600, 1000, 2000, 800, 1300.])[kind]
         name, hdx = self.has["kernel"].split()
-        psi = {s: Kernel(name, self.dim, float(hdx) * s).lattice_sum(s, self.dim) for s in np.unique(size)}
+        psi = {s: Kernel(name, self.dim, float(hdx) * s).lattice_sum(s, self.dim)
+               for s in np.unique(size)}
         mass = rho0 / np.array([psi[s] for s in size[:, 0]])
-        mass[kind == GRAIN] = 2000 * np.pi * 0.002**2 * (1 if self.dim == 2 else 4 / 3 * 0.002)    # discs and spheres
+        # discs and spheres
+        mass[kind == GRAIN] = 2000 * np.pi * 0.002**2 * (1 if self.dim == 2 else 4 / 3 * 0.002)
         uneven = np.random.default_rng(2).uniform(-1, 1, (len(x), 4)) * self.setting("uneven", 0)
-        mass *= 1 + np.where(solids | fluids, 0.5 * uneven[:, 0], 0)    # more is too much noise for densities by sums
+        # more is too much noise for densities by sums
+        mass *= 1 + np.where(solids | fluids, 0.5 * uneven[:, 0], 0)
         x = x + np.where(fluids[:, None], uneven[:, 1:] * DX, 0) * flat
         rho = np.where(fluids, rho0 * (1 + random.uniform(-1e-3, 1e-3, len(x))), rho0)
         return {"x": x, "v": v * flat, "type": kind, "mol": mol, "rho": rho, "mass": mass}
 
     def held(self, x, kind):
-        return np.isin(kind, (BODY, SOFT)) & bool(self.setting("held")) & ((x[:, 1] < self.root * DX) | bool(self.setting("all held")))
+        return np.isin(kind, (BODY, SOFT)) & bool(self.setting("held")) & (
+            (x[:, 1] < self.root * DX) | bool(self.setting("all held")))
 
     @property
     def flies(self):
@@ -244,11 +276,13 @@ class PairScene:
             mol, rho, mass = p["mol"][k], float(p["rho"][k]), float(p["mass"][k])
             if grains:
                 grain = p["type"][k] == GRAIN
-                lines.append(f"{ids[k]} {p['type'][k]} {where} {mol} {0.0 if grain else rho!r} {rho if grain else mass!r} {0.004 if grain else 0.0}")
+                lines.append(f"{ids[k]} {p['type'][k]} {where} {mol} {0.0 if grain else rho!r} "
+                             f"{rho if grain else mass!r} {0.004 if grain else 0.0}")
             else:
                 lines.append(f"{ids[k]} {mol} {p['type'][k]} {rho!r} {mass!r} {where}")
         zeros = " 0 0 0" if grains else ""
-        lines += ["", "Velocities", "", *(f"{ids[k]} {' '.join(map(repr, v[k].tolist()))}{zeros}" for k in order)]
+        lines += ["", "Velocities", "",
+                  *(f"{ids[k]} {' '.join(map(repr, v[k].tolist()))}{zeros}" for k in order)]
         return "\n".join(lines) + "\n"
 
     # ---- deck ----
@@ -288,22 +322,32 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
             parts.append(f"{self.has['body']} {self.has['solid']}")
         if self.setting("grains"):
             parts.append("fsi/grain")
-        return f"pair_style {'hybrid/overlay ' if self.setting('grains') else 'hybrid ' if len(parts) > 1 else ''}{' '.join(parts)}"
+        return (
+            "pair_style "
+            f"{'hybrid/overlay ' if self.setting('grains') else 'hybrid ' if len(parts) > 1 else ''}{' '.join(parts)}")
 
     @property
     def coeff(self):
-        body, soft = ("body", "soft" if self.setting("soft") else "body") if self.has["body"] else ("water", "water")
-        names = f"water {body} wall buoy water {'NULL' if self.setting('grains') else 'water'} {'oil' if self.setting('oil') else 'water'} {soft}"
+        body, soft = ("body", "soft" if self.setting("soft") else "body") if self.has["body"] else (
+            "water", "water")
+        names = (f"water {body} wall buoy water {'NULL' if self.setting('grains') else 'water'} "
+                 f"{'oil' if self.setting('oil') else 'water'} {soft}")
         more = f"{'' if 'poisson' in self.has['material'] else 'poisson 0.3'} {self.has['material']}"
-        lines = [f"fsi/material water fluid rho 1000 {self.has['water'] or 'viscosity 1'}", "fsi/material wall wall rho 1000", "fsi/material buoy wall rho 600",
-                 f"fsi/material body solid rho 1100 young 5e4 {more}", f"fsi/material soft solid rho 1300 young 2e4 {more}", "fsi/material oil fluid rho 800 viscosity 3 sound 12"]
+        lines = [f"fsi/material water fluid rho 1000 {self.has['water'] or 'viscosity 1'}",
+                 "fsi/material wall wall rho 1000", "fsi/material buoy wall rho 600",
+                 f"fsi/material body solid rho 1100 young 5e4 {more}",
+                 f"fsi/material soft solid rho 1300 young 2e4 {more}",
+                 "fsi/material oil fluid rho 800 viscosity 3 sound 12"]
         hybrid = "hybrid" in self.pair
         lines.append(f"pair_coeff * * {'fsi/fluid ' if hybrid else ''}NULL {names}")
         if self.has["body"]:
-            lines.append(f"pair_coeff * * {self.has['body']} NULL NULL body NULL NULL NULL NULL NULL {soft}")
+            lines.append(f"pair_coeff * * {self.has['body']} NULL NULL body NULL NULL NULL NULL "
+                         f"NULL {soft}")
         if self.setting("grains"):
-            lines += ["pair_coeff 1 6 fsi/grain", *(["pair_coeff 5 6 fsi/grain"] if self.has["refine"] else ["pair_coeff 5 6 none"]),
-                      *(f"pair_coeff {k} 6 none" for k in (2, 3, 4, 6)), "pair_coeff 6 7 fsi/grain" if self.setting("oil") else "pair_coeff 6 7 none", "pair_coeff 6 8 none"]
+            lines += ["pair_coeff 1 6 fsi/grain", *(
+                ["pair_coeff 5 6 fsi/grain"] if self.has["refine"] else ["pair_coeff 5 6 none"]),
+                      *(f"pair_coeff {k} 6 none" for k in (2, 3, 4, 6)), "pair_coeff 6 7 fsi/grain"
+                      if self.setting("oil") else "pair_coeff 6 7 none", "pair_coeff 6 8 none"]
         return "\n".join(lines)
 
     @property
@@ -314,7 +358,8 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
     def physics(self):
         """What follows pair_style, and follows a restart file, too."""
         has = self.has
-        lines = [self.coeff, has["regions"], "neigh_modify every 1 delay 0 check yes", f"neighbor {self.skin * DX!r} bin", self.fsi]
+        lines = [self.coeff, has["regions"], "neigh_modify every 1 delay 0 check yes",
+                 f"neighbor {self.skin * DX!r} bin", self.fsi]
         if has["stress"]:
             lines.append(f"fix stress all fsi/stress {has['stress']}")
         lines += self.fixes()
@@ -327,9 +372,11 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
     def fixes(self):
         has, lines = self.has, []
         if has["gravity"]:
-            lines.append(f"fix gravity {'all' if has['gravity'] is True else has['gravity']} gravity 9.81 vector <0.3> -1 0")
+            lines.append(f"fix gravity {'all' if has['gravity'] is True else has['gravity']} "
+                         "gravity 9.81 vector <0.3> -1 0")
         lines += self.walls() + self.ends()
-        lines.append(has["lines"].replace("{flat}", " force * on on off torque * off off on" if self.dim == 2 else "")
+        lines.append(has["lines"].replace("{flat}", " force * on on off torque * off off on"
+                                          if self.dim == 2 else "")
                      .replace("{still}", "NULL" if self.dim == 2 else "v_zero"))
         if has["refine"]:
             lines.append(f"fix refine water fsi/refine 6 types 1 5 {has['refine']}")
@@ -346,7 +393,8 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         if self.mirrors:
             mirrors.append(f"{ground} {self.high * DX if self.plane else 0} {has['ground']}")
             if not self.periodic[0] and not self.open:
-                mirrors += [f"<xlo> <{-HALF * DX}> {has['sides']}", f"<xhi> <{HALF * DX}> {has['sides']}"]
+                mirrors += [f"<xlo> <{-HALF * DX}> {has['sides']}",
+                            f"<xhi> <{HALF * DX}> {has['sides']}"]
             mirrors.append(has["mirror"])
         if self.has["full"] and not self.periodic[1] and not (self.plane and self.walled):
             mirrors.append(f"yhi {self.high * DX}")
@@ -366,20 +414,29 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         if self.watched and "reset_timestep" in text:    # LAMMPS refuses it with fix ave/atom
             text = f"unfix w_mean\n{text}\nfix w_mean all ave/atom 1 2 2 c_w_atom[1] c_w_surface"
         text = text.replace("{again}", again).replace("{all again}", "\n".join(self.fixes()))
-        return text.replace("{lattice}", "sq" if self.dim == 2 else "sc").replace("{z}", "0" if self.dim == 2 else "0.5").replace("{wider}", self.wider()) + (self.idling() if self.idle else "")
+        return text.replace("{lattice}", "sq" if self.dim == 2 else "sc").replace(
+            "{z}", "0" if self.dim == 2
+            else "0.5").replace("{wider}", self.wider()) + (self.idling() if self.idle else "")
 
     def wider(self):
-        axes = [f"{axis} delta -0.01 0.01" for axis, periodic in zip("xyz", self.periodic) if not periodic]
+        axes = [f"{axis} delta -0.01 0.01" for axis, periodic in zip("xyz", self.periodic)
+                if not periodic]
         return f"change_box all {' '.join(axes)}" if axes else ""
 
     def idling(self):
-        """After the first run: step numbers of the same phase, what is there given again, nothing added. Not: what is refused, a box that absorbers measure,
-        walls that have moved since."""
+        """After the first run: step numbers of the same phase, what is there given again, nothing
+        added. Not: what is refused, a box that absorbers measure, walls that have moved since."""
         given = lambda *levels: any(level in self.row for level in levels)    # noqa: E731
-        steps = "" if given("moving particles", "driven particles", "adaptive step", "adaptive sub-steps") else "reset_timestep $(step+60) time $(time:%.17g)"
-        walls = [] if given("moving mirror", "moving particles", "driven particles") else self.walls()
-        return "\n".join(["", steps, "" if self.open else self.wider(), "velocity all set 0 0 0 sum yes units box", "displace_atoms all move 0 0 0 units box", "balance 1.1 shift xy 5 1.05",
-                          self.coeff, self.fsi, *walls, *self.ends(), "region nowhere block -9 -8 -9 -8 INF INF units box", "delete_atoms region nowhere compress no", "run 0"])
+        steps = "" if given("moving particles", "driven particles", "adaptive step", "adaptive "
+                            "sub-steps") else "reset_timestep $(step+60) time $(time:%.17g)"
+        walls = [] if given("moving mirror", "moving particles",
+                            "driven particles") else self.walls()
+        return "\n".join(["", steps, "" if self.open else self.wider(),
+                          "velocity all set 0 0 0 sum yes units box",
+                          "displace_atoms all move 0 0 0 units box", "balance 1.1 shift xy 5 1.05",
+                          self.coeff, self.fsi, *walls, *self.ends(),
+                          "region nowhere block -9 -8 -9 -8 INF INF units box",
+                          "delete_atoms region nowhere compress no", "run 0"])
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)
@@ -407,22 +464,32 @@ write_restart {folder}/mid.restart
 
     def outputs(self):
         """Commands that look at the scene from all sides"""
-        solid = [f"compute w_tip body fsi/probe ux uy point {3 * DX} {(self.low + 3) * DX} {2.5 * DX if self.dim == 3 else 0}"] if self.has["body"] else []
+        solid = [f"compute w_tip body fsi/probe ux uy point {3 * DX} {(self.low + 3) * DX} "
+                 f"{2.5 * DX if self.dim == 3 else 0}"] if self.has["body"] else []
         middle = f"-0.05 0.03 {0.03 if self.dim == 3 else 0}"
         on = "body" if self.has["body"] else "floor"
-        lines = ["compute w_energy all fsi/energy", "compute w_atom all fsi/atom p rho psi volume vonmises sxx syy sxy", "compute w_surface all fsi/surface/atom",
-                 f"compute w_force {on} fsi/force split yes", f"compute w_probe all fsi/probe p rho vx vy point {middle}", "fix w_report all fsi/report", "fix w_watch all fsi/watch 3 action warn",
+        lines = ["compute w_energy all fsi/energy",
+                 "compute w_atom all fsi/atom p rho psi volume vonmises sxx syy sxy",
+                 "compute w_surface all fsi/surface/atom",
+                 f"compute w_force {on} fsi/force split yes",
+                 f"compute w_probe all fsi/probe p rho vx vy point {middle}",
+                 "fix w_report all fsi/report", "fix w_watch all fsi/watch 3 action warn",
                  *solid, "fix w_mean all ave/atom 1 2 2 c_w_atom[1] c_w_surface"]
         seen = " ".join(f"c_{c[8:].split()[0]}[1]" for c in lines if "probe" in c or "/force" in c)
-        return "\n".join([*lines, f"thermo_style custom step c_w_energy press pe {seen}", "thermo 1"])
+        return "\n".join([*lines, f"thermo_style custom step c_w_energy press pe {seen}",
+                          "thermo 1"])
 
     def continued(self, folder):
         """From the restart file"""
-        return turned(f"read_restart {folder}/mid.restart\n{self.pair if self.setting('pair again') else ''}\n{self.physics()}\n{self.has['stays']}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
+        return turned(f"read_restart {folder}/mid.restart\n"
+                      f"{self.pair if self.setting('pair again') else ''}\n{self.physics()}\n"
+                      f"{self.has['stays']}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
 
     def end(self, folder):
-        count = 'if "$(is_defined(fix,dt))" then "unfix dt"\ntimestep 1e-9\nneighbor 1e-13 bin\nrun 1\n' if self.counted else ""
-        return (f"{count}run 0\nwrite_dump all custom {folder}/end.dump id type mass x y z vx vy vz c_state modify sort id time yes format float %.17g\n"
+        count = ('if "$(is_defined(fix,dt))" then "unfix dt"\ntimestep 1e-9\nneighbor 1e-13 bin\n'
+                 'run 1\n' if self.counted else "")
+        return (f"{count}run 0\nwrite_dump all custom {folder}/end.dump id type mass x y z vx vy "
+                "vz c_state modify sort id time yes format float %.17g\n"
                 "variable now equal time\n")
 
 
@@ -442,7 +509,8 @@ class State:
 
 def read(folder):
     frame = dump.read(Path(folder) / "end.dump")[-1]
-    return State(frame["id"].astype(int), frame["type"].astype(int), frame["mass"], frame.vector(("x", "y", "z")), frame.vector(("vx", "vy", "vz")),
+    return State(frame["id"].astype(int), frame["type"].astype(int), frame["mass"],
+                 frame.vector(("x", "y", "z")), frame.vector(("vx", "vy", "vz")),
                  frame["c_state"] if "c_state" in frame.columns else frame["c_state[1]"], 0.0, {})
 
 
@@ -458,7 +526,8 @@ def go(scene, folder, text=None):
                 lmp.command(line)
         state = read(folder)
         state.time = lmp.extract_variable("now")
-        state.extra["deleted"] = lmp.extract_variable("gone") - lmp.extract_variable("come") if text is None else 0.0
+        state.extra["deleted"] = lmp.extract_variable("gone") - lmp.extract_variable(
+            "come") if text is None else 0.0
         for name, ends in {"in": "in", "out": "out", "refine": "refine"}.items():
             if lmp.has_id("fix", ends):
                 state.extra[name] = np.array([lmp.extract_fix(ends, 0, 1, k) for k in range(3)])

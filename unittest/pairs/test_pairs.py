@@ -1,4 +1,5 @@
-"""Scenes in which every pair of features meets: what must not matter does not, what must be conserved is, what is refused says why."""
+"""Scenes in which every pair of features meets: what must not matter does not, what must be
+conserved is, what is refused says why."""
 
 import functools
 import math
@@ -17,8 +18,9 @@ from .factors import FACTOR_OF, FACTORS, FIRST
 from .scene import DT, DX, FLOOR, HALF, PairScene, go, go_on_ranks
 
 REFUSED = factors.refused_rows()
-# After 40 steps relative to the scene, its largest velocity, its density: growth of round-off, 1e-16, by collisions of perturbed particles. What is
-# missing or counted twice shows at 1e-6 and above
+# After 40 steps relative to the scene, its largest velocity, its density: growth of round-off,
+# 1e-16, by collisions of perturbed particles. What is missing or counted twice shows at 1e-6 and
+# above
 ROUND = 1e-9
 SKIN = 1e-10    # other neighbor lists have the same pairs in another order
 
@@ -34,7 +36,8 @@ def given(scene, *levels):
 
 def new_ids(scene):
     """Are IDs given at run time?"""
-    return scene.open or bool(scene.has["refine"]) or given(scene, "reset_atoms", "delete_atoms", "create_atoms")
+    return scene.open or bool(scene.has["refine"]) or given(scene, "reset_atoms", "delete_atoms",
+                                                            "create_atoms")
 
 
 @functools.lru_cache(maxsize=1)
@@ -95,12 +98,15 @@ def same(scene, a, b, tolerance, ids=None):
     """Are two states the same to this, relative to the sizes?"""
     which = partners(scene, a, b, not new_ids(scene) if ids is None else ids)
     assert np.array_equal(a.type, b.type[which])
-    off = {"x": np.abs(apart(scene, a.x, b.x[which])).max() / np.abs(a.x).max(), "v": np.abs(a.v - b.v[which]).max() / np.abs(a.v).max(),
-           "rho": np.abs(a.rho - b.rho[which]).max() / 1000, "mass": np.abs(a.mass / b.mass[which] - 1).max()}
-    assert max(off.values()) <= tolerance, {name: f"{value:.1e}" for name, value in off.items() if not value <= tolerance}
+    off = {"x": np.abs(apart(scene, a.x, b.x[which])).max() / np.abs(a.x).max(),
+           "v": np.abs(a.v - b.v[which]).max() / np.abs(a.v).max(),
+           "rho": np.abs(a.rho - b.rho[which]).max() / 1000,
+           "mass": np.abs(a.mass / b.mass[which] - 1).max()}
+    assert max(off.values()) <= tolerance, {name: f"{value:.1e}" for name, value in off.items()
+                                            if not value <= tolerance}
 
 
-# ---- invariants: who they are asked of, and what they ask -------------------------------------------
+# ---- invariants: who they are asked of, and what they ask ----------------------------------------
 
 def always(_):
     return True
@@ -111,7 +117,8 @@ def finite(r):
     assert all(np.isfinite(a).all() for a in (s.x, s.v, s.rho, s.mass)) and s.mass.min() > 0
     assert len(set(s.id)) == len(s.id) and s.id.min() > 0
     n = len(r.scene.particles["x"])
-    assert n <= 2050 and (r.scene.open or r.scene.has["refine"] or r.scene.setting("spot") or len(s.id) == n)
+    assert n <= 2050 and (r.scene.open or r.scene.has["refine"] or r.scene.setting("spot")
+                          or len(s.id) == n)
 
 
 def keeps_mass(scene):
@@ -121,9 +128,12 @@ def keeps_mass(scene):
 def mass(r):
     """What was there, came in, went out, was deleted"""
     before, s = r.scene.particles["mass"], r.counted
-    here = (np.abs(s.x[:, 0]) < HALF * DX) | (not r.scene.open) | (s.type == FLOOR)    # not in the buffer of an end
-    balance = [*s.mass[here], *-before, s.extra["deleted"], -s.extra.get("in mass", 0.0), -s.extra.get("out mass", 0.0)]
-    assert abs(math.fsum(balance)) < 1e-14 * math.fsum(before) * (100 if r.scene.open else 1)    # the ends count in sums of their own
+    # not in the buffer of an end
+    here = (np.abs(s.x[:, 0]) < HALF * DX) | (not r.scene.open) | (s.type == FLOOR)
+    balance = [*s.mass[here], *-before, s.extra["deleted"], -s.extra.get("in mass", 0.0),
+               -s.extra.get("out mass", 0.0)]
+    # the ends count in sums of their own
+    assert abs(math.fsum(balance)) < 1e-14 * math.fsum(before) * (100 if r.scene.open else 1)
 
 
 def two_ranks(r):
@@ -139,7 +149,8 @@ def threads(r):
 
 
 def balanced(r):
-    same(r.scene, r.base, go_on_ranks(replace(r.scene, balanced=True), r.folder / "balanced", 2), ROUND)
+    same(r.scene, r.base, go_on_ranks(replace(r.scene, balanced=True), r.folder / "balanced", 2),
+         ROUND)
 
 
 def skin(r):
@@ -152,7 +163,8 @@ def watched(r):
 
 
 def cut(r):
-    """A run in two parts is the run at once. (Delete_atoms numbers by order, which is made anew.)"""
+    """A run in two parts is the run at once. (Delete_atoms numbers by order, which is made
+    anew.)"""
     r.alike(cut=True)
 
 
@@ -191,10 +203,15 @@ def restart(r):
 
 
 def alone(scene):
-    """Nothing outside acts. Shifting with a background, hourglass forces of pair_style fsi/solid, which turn with particles, a hole and a new density
-    change momentum; with implicit viscosity fluids lack a reaction of solids that accelerate in sub-steps (theory.rst)."""
-    return not (scene.walled or scene.plane or scene.open or scene.has["gravity"] or scene.setting("stream") or given(scene, "clamped", "fsi/set", "background", "hypo updated", "velocity", "addforce", "setforce", "spring", "viscous", "momentum")
-                or scene.setting("spot") or given(scene, "yield stress") and given(scene, "sub-steps", "adaptive sub-steps"))
+    """Nothing outside acts. Shifting with a background, hourglass forces of pair_style fsi/solid,
+    which turn with particles, a hole and a new density change momentum; with implicit viscosity
+    fluids lack a reaction of solids that accelerate in sub-steps (theory.rst)."""
+    return not (scene.walled or scene.plane or scene.open or scene.has["gravity"]
+                or scene.setting("stream") or given(scene, "clamped", "fsi/set", "background",
+                                                    "hypo updated", "velocity", "addforce",
+                                                    "setforce", "spring", "viscous", "momentum")
+                or scene.setting("spot") or given(scene, "yield stress")
+                and given(scene, "sub-steps", "adaptive sub-steps"))
 
 
 def momentum(r):
@@ -206,7 +223,9 @@ def momentum(r):
 
 def drifts(scene):
     """Nothing outside stands still, and no step depends on speeds."""
-    return not (scene.walled or scene.plane or scene.open or scene.setting("stream") or given(scene, "clamped", "adaptive step", "adaptive sub-steps", "region", "moving region", "unsettled", "create_atoms", "spring", "viscous", "momentum"))
+    return not (scene.walled or scene.plane or scene.open or scene.setting("stream") or given(
+        scene, "clamped", "adaptive step", "adaptive sub-steps", "region", "moving region",
+        "unsettled", "create_atoms", "spring", "viscous", "momentum"))
 
 
 def galilei(r):
@@ -218,8 +237,13 @@ def galilei(r):
     same(r.scene, r.base, other, ROUND)
 
 
-INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "threads": (ordered, threads), "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched), "cut": (ordered, cut), "idle": (ordered, idle),
-              "numbering": (no_levels, numbering), "mirror": (ordered, mirror), "restart": (always, restart), "momentum": (alone, momentum), "frame": (drifts, galilei)}
+INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks),
+              "four ranks": (ordered, four_ranks), "threads": (ordered, threads),
+              "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched),
+              "cut": (ordered, cut), "idle": (ordered, idle),
+              "numbering": (no_levels, numbering), "mirror": (ordered, mirror),
+              "restart": (always, restart), "momentum": (alone, momentum),
+              "frame": (drifts, galilei)}
 SAMPLE = {"four ranks": 8, "balanced": 3}    # asked of one scene in so many
 
 
@@ -228,8 +252,10 @@ def pytest_generate_tests(metafunc):
     if "invariant" in metafunc.fixturenames:
         seed = metafunc.config.getoption("--pairs-seed")
         metafunc.parametrize("seed, k, invariant", [
-            pytest.param(seed, k, name, id=f"{k}-{name}", marks=pytest.mark.xdist_group(f"pairs{k}"))
-            for k, row in enumerate(rows(seed)) for name, (asked, _) in INVARIANTS.items() if k % SAMPLE.get(name, 1) == 0 and asked(PairScene(row))])
+            pytest.param(seed, k, name, id=f"{k}-{name}",
+                         marks=pytest.mark.xdist_group(f"pairs{k}"))
+            for k, row in enumerate(rows(seed)) for name, (asked, _) in INVARIANTS.items()
+            if k % SAMPLE.get(name, 1) == 0 and asked(PairScene(row))])
 
 
 def test_pairs(seed, k, invariant):
@@ -238,8 +264,11 @@ def test_pairs(seed, k, invariant):
     INVARIANTS[invariant][1](r)
 
 
-# What acts from outside, or changes momentum as alone() says: with it hardly a scene of all pairs would be asked
-OUTSIDE = {*factors.all_of("walls"), *factors.all_of("ends"), *factors.all_of("gravity"), *factors.all_of("symmetry"), *factors.all_of("other fix"), "velocity", "create_atoms", "clamped", "fsi/set", "background",
+# What acts from outside, or changes momentum as alone() says: with it hardly a scene of all pairs
+# would be asked
+OUTSIDE = {*factors.all_of("walls"), *factors.all_of("ends"), *factors.all_of("gravity"),
+           *factors.all_of("symmetry"), *factors.all_of("other fix"), "velocity", "create_atoms",
+           "clamped", "fsi/set", "background",
            "hypo updated", "delete_atoms", "delete, no compress"}
 
 
@@ -259,14 +288,20 @@ def test_alone(request, k):
         galilei(r)
 
 
-# What the balance of energy does not contain, says its page; what takes other steps as dt falls, or is not smooth in time
-ROUGH = {"article", "summation", "ratio", "shift", "shift every 3", "surface rule", "damage", "hypo updated", "quadratic updated", "delete_atoms", "delete, no compress", "fsi/set", "redefined", "given again", "timestep", *factors.all_of("command", "reset_timestep", "change_box", "neighbor"), *factors.all_of("other fix"), "adaptive step", "adaptive sub-steps",
+# What the balance of energy does not contain, says its page; what takes other steps as dt falls, or
+# is not smooth in time
+ROUGH = {"article", "summation", "ratio", "shift", "shift every 3", "surface rule", "damage",
+         "hypo updated", "quadratic updated", "delete_atoms", "delete, no compress", "fsi/set",
+         "redefined", "given again", "timestep",
+         *factors.all_of("command", "reset_timestep", "change_box", "neighbor"),
+         *factors.all_of("other fix"), "adaptive step", "adaptive sub-steps",
          *factors.all_of("levels"), *factors.all_of("ends", "stream")}
 
 
 @pytest.mark.parametrize("k", range(20))
 def test_energy(tmp_path, request, k):
-    """The sum of energies drifts by the error of the time step, or by less than what corners of pressure, contact and guard make."""
+    """The sum of energies drifts by the error of the time step, or by less than what corners of
+    pressure, contact and guard make."""
     of_seed = smooth_rows(request.config.getoption("--pairs-seed"))
     row = of_seed[k * len(of_seed) // 20]
     print(" | ".join(level for level in row if level != FIRST[FACTOR_OF[level]]))
@@ -279,29 +314,40 @@ def test_energy(tmp_path, request, k):
     if half < max(0.8 * whole, 2e-4):
         return
     quarter = drift(DT / 4)
-    assert quarter < 0.85 * half and quarter < whole, f"{whole:.1e}, {half:.1e} and {quarter:.1e} of the kinetic energy"
+    assert (quarter < 0.85 * half and quarter
+            < whole), f"{whole:.1e}, {half:.1e} and {quarter:.1e} of the kinetic energy"
 
 
-@pytest.mark.parametrize("pair, message, row", REFUSED, ids=["-".join(pair) for pair, _, _ in REFUSED])
+@pytest.mark.parametrize("pair, message, row", REFUSED,
+                         ids=["-".join(pair) for pair, _, _ in REFUSED])
 def test_refused(tmp_path, pair, message, row):
     with pytest.raises(Exception) as error:
         go(PairScene(row), tmp_path)
     assert re.search(message, str(error.value)), (pair, str(error.value))
 
 
-FOUND = {  # faults that pairs have shown, each in the scene that has these levels and the first ones of other factors: what was asked
+# faults that pairs have shown, each in the scene that has these levels and the first ones of other
+# factors: what was asked
+FOUND = {
     "settling-beside-a-segment": (["3D", "cubic", "segment", "region", "svk", "clamped"], "ranks"),
-    "what-a-thin-body-hides-from-either-side": (["3D", "tension", "thin", "clamped", "region"], "skin"),
+    "what-a-thin-body-hides-from-either-side": (["3D", "tension", "thin", "clamped", "region"],
+                                                "skin"),
     "bonds-longer-than-half-a-period": (["3D", "plastic", "self", "fsi/set"], "skin"),
-    "images-that-are-looked-at-before-sub-steps": (["svk", "sub-steps", "moving region", "symmetry plane"], "watched"),
-    "rigid-body-bonded-to-its-image": (["neo-hookean", "rigid", "sub-steps", "symmetry plane"], "watched"),
-    "end-that-leaves-a-rank": (["3D", "thin particles", "damage", "moving region", "absorbing ends"], "balanced"),
-    "bodies-behind-walls-in-fluids-of-varying-viscosity": (["3D", "yield stress", "moving mirror", "neo-hookean", "clamp on a float"], "numbering"),
-    "densities-of-walls-when-levels-settle": (["region", "floating", "shift every 3", "unequal masses", "reset_timestep"], "cut"),
+    "images-that-are-looked-at-before-sub-steps": (["svk", "sub-steps", "moving region",
+                                                    "symmetry plane"], "watched"),
+    "rigid-body-bonded-to-its-image": (["neo-hookean", "rigid", "sub-steps", "symmetry plane"],
+                                       "watched"),
+    "end-that-leaves-a-rank": (["3D", "thin particles", "damage", "moving region",
+                                "absorbing ends"], "balanced"),
+    "bodies-behind-walls-in-fluids-of-varying-viscosity": (
+        ["3D", "yield stress", "moving mirror", "neo-hookean", "clamp on a float"], "numbering"),
+    "densities-of-walls-when-levels-settle": (["region", "floating", "shift every 3",
+                                               "unequal masses", "reset_timestep"], "cut"),
     "densities-of-solids-when-levels-settle": (["paper", "moving region", "ratio"], "cut"),
     "surfaces-of-a-fix-that-is-given-again": (["surface rule"], "idle"),
     "ratios-of-a-fix-that-is-given-again": (["paper", "ratio"], "idle"),
-    "shifting-between-ends-of-a-fix-that-is-given-again": (["background", "shift every 3", "absorbing ends"], "idle"),
+    "shifting-between-ends-of-a-fix-that-is-given-again": (
+        ["background", "shift every 3", "absorbing ends"], "idle"),
     "acceleration-of-a-wall-that-is-given-again": (["floating"], "idle"),
     "thickness-of-thin-bodies": (["3D", "quintic", "no walls", "thin", "rigid", "gravity"], "skin"),
 }
@@ -328,22 +374,27 @@ def words_of_pages():
         syntax = re.search(r'\nSyntax\n"+\n(.*?)\nExamples\n"', text, re.S)
         if syntax:
             # "threads" has those with suffix omp, unittest/kokkos those with kk
-            styles = {re.sub(r" command$|/omp$|/kk$", "", name).split()[-1] for name in re.findall(r"^\.\. index:: (.*)$", text, re.M)}
+            styles = {re.sub(r" command$|/omp$|/kk$", "", name).split()[-1]
+                      for name in re.findall(r"^\.\. index:: (.*)$", text, re.M)}
             found[page.stem] = styles, set(re.findall(r"\*([a-z][a-z/]*\d?)\*", syntax[1])) | styles
     return found
 
 
 def test_every_word_of_the_manual_is_a_level():
     """Or is tested elsewhere: whoever adds a style or a keyword says where it meets the others."""
-    lines = {line for row in factors.rows() for line in PairScene(row, energy=True).text(".").splitlines()}
+    lines = {line for row in factors.rows()
+             for line in PairScene(row, energy=True).text(".").splitlines()}
     tokens = [set(line.split()) for line in lines]
     pages = words_of_pages()
     assert len(pages) > 20 and sum(len(words) for _, words in pages.values()) > 200
     for page, (styles, words) in pages.items():
         drawn = set().union(*(line for line in tokens if line & styles))
-        other = {word: file for file, more in factors.ELSEWHERE.get(page, {}).items() for word in more.split()}
-        assert words - drawn - set(other) == set(), f"{page}.rst: neither a level of FACTORS nor in ELSEWHERE"
-        assert set(other) <= words - drawn, f"{page}.rst has no such word, or it is a level: take it out of ELSEWHERE"
+        other = {word: file for file, more in factors.ELSEWHERE.get(page, {}).items()
+                 for word in more.split()}
+        assert words - drawn - set(
+            other) == set(), f"{page}.rst: neither a level of FACTORS nor in ELSEWHERE"
+        assert (set(other) <= words
+                - drawn), f"{page}.rst has no such word, or it is a level: take it out of ELSEWHERE"
         for word, file in other.items():
             text = (paths.ROOT / "unittest/styles" / f"{file}.py").read_text()
             assert re.search(rf"(?<![\w/]){word}(?![\w/])", text), f"{file}.py does not test {word}"

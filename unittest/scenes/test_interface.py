@@ -2,16 +2,18 @@
 
 import numpy as np
 import pytest
-from scenes import RUBBER, WATER, Scene, close, cloud, dam_gate, difference, lattice, pairs, run, sum_over, watch
+from scenes import (RUBBER, WATER, Scene, close, cloud, dam_gate, difference, lattice, pairs, run,
+                    sum_over, watch)
 
 RHO_S, NU, C_F = 2000.0, 0.25, 10.0
 
 
 def reflection(couple, n, dim=2, c_s=15.0, kernel="wendland", hdx=1.5):
-    """(reflected over incident pressure, transmitted over incident normal stress) of a pulse that comes from the fluid.
+    """(reflected over incident pressure, transmitted over incident normal stress) of a pulse that
+    comes from the fluid.
 
-    A periodic strip, fluid in 0 < x < 2, solid in 2 < x < 4; the pulse starts at x = 1 towards the solid and is
-    measured, by the areas under the wave's p, when it is back at x = 1.
+    A periodic strip, fluid in 0 < x < 2, solid in 2 < x < 4; the pulse starts at x = 1 towards the
+    solid and is measured, by the areas under the wave's p, when it is back at x = 1.
     """
     dx = 1.0 / n
     # (K + 4G/3) = E (1 - nu)/((1 + nu)(1 - 2 nu)) = rho c^2
@@ -25,12 +27,14 @@ def reflection(couple, n, dim=2, c_s=15.0, kernel="wendland", hdx=1.5):
     v[:, 0] = u0 * pulse
     box = ((0, 0, 0), (4, *[size[1] * dx] * 2))
     dt = 0.25 * dx / c_s
-    with Scene(x, v, dim=dim, dx=dx, kernel=kernel, hdx=hdx, type=1 + solid, mol=1 + solid, boundary="p p p", box=box,
+    with Scene(x, v, dim=dim, dx=dx, kernel=kernel, hdx=hdx, type=1 + solid, mol=1 + solid,
+               boundary="p p p", box=box,
                materials=(WATER, f"solid rho {RHO_S} young {young} poisson {NU}"), dt=dt,
                fluid=f"sound {C_F} tension yes couple {couple}",
                solid=f"gradient {'corrected' if couple == 'wall' else 'plain'}") as s:
         s.run()
-        # the density stands half a step behind, the pulse c dt/2 further back; masses keep the volumes of the lattice
+        # the density stands half a step behind, the pulse c dt/2 further back; masses keep the
+        # volumes of the lattice
         behind = u0 / C_F * np.exp(-((x[:, 0] - 1 + C_F * dt / 2) / width)**2)
         s.put("rho", np.where(solid, RHO_S, 1000 * (1 + behind)))
         s.run(round(2.0 / C_F / dt))
@@ -48,13 +52,15 @@ THEORY = (RHO_S * 15 - 1000 * C_F) / (RHO_S * 15 + 1000 * C_F)    # (Z2 - Z1)/(Z
 @pytest.mark.parametrize("couple", ["full", "wall"])
 @pytest.mark.parametrize("dim,spacings", [(2, (20, 40, 80)), (3, (20, 40))])
 def test_reflection(couple, dim, spacings):
-    """Whatever pair law carries the traction, displacement and traction are continuous on the scale of the wave: both
-    modes must give the reflection of acoustics, and 1 + R behind the interface."""
+    """Whatever pair law carries the traction, displacement and traction are continuous on the scale
+    of the wave: both modes must give the reflection of acoustics, and 1 + R behind the
+    interface."""
     result = np.array([reflection(couple, n, dim) for n in spacings])
     error = np.abs(result - [THEORY, 1 + THEORY])
     print(f"reflection, couple {couple}, {dim}D, theory {THEORY}: "
           + ", ".join(f"{r:.4f} ({n})" for n, r in zip(spacings, result[:, 0])))
-    # the pulse is 0.15 n spacings wide: 3, 6, 12; two orders better at 12 h than at 3 is what second order gives
+    # the pulse is 0.15 n spacings wide: 3, 6, 12; two orders better at 12 h than at 3 is what
+    # second order gives
     assert (error[-1] < 0.015).all() and error[-1, 0] < 0.3 * error[0, 0]
 
 
@@ -63,16 +69,20 @@ def test_reflection_from_a_softer_solid():
     r, t = reflection("full", 80, c_s=4.0)
     theory = (RHO_S * 4 - 1000 * C_F) / (RHO_S * 4 + 1000 * C_F)
     print(f"reflection, soft solid: {r:.4f}, theory {theory:.4f}")
-    assert abs(r - theory) < 0.02 and abs(t - 1 - theory) < 0.02    # pulse in the solid: 5 spacings wide
+    # pulse in the solid: 5 spacings wide
+    assert abs(r - theory) < 0.02 and abs(t - 1 - theory) < 0.02
 
 
 def coupled_cloud(dim, couple, more=""):
-    """shaken fluid (left) and solid with different densities, velocities and stresses: (scene, x, v, rho)"""
+    """shaken fluid (left) and solid with different densities, velocities and stresses: (scene, x,
+    v, rho)"""
     x, v = cloud([6] * dim, 0.1, vmax=1.0)
     solid = x[:, 0] > 0.3
     rho = np.random.default_rng(9).uniform(950, 1050, len(x))
-    s = Scene(x, v, dim=dim, dx=0.1, hdx=1.3, type=1 + solid, mol=1 + solid, materials=(WATER + " viscosity 20", RUBBER), dt=0.01,
-              fluid=f"sound 10 couple {couple} {more}", commands=["fix g all gravity 9.81 vector 0.6 -0.8 0"])
+    s = Scene(x, v, dim=dim, dx=0.1, hdx=1.3, type=1 + solid, mol=1 + solid,
+              materials=(WATER + " viscosity 20", RUBBER), dt=0.01,
+              fluid=f"sound 10 couple {couple} {more}",
+              commands=["fix g all gravity 9.81 vector 0.6 -0.8 0"])
     s.run(1)
     s.put("x", x), s.put("v", v), s.put("rho", rho)
     return s.run(), x, v, rho, solid
@@ -80,8 +90,10 @@ def coupled_cloud(dim, couple, more=""):
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("couple,more", [("wall", ""), ("wall", "extrapolate yes"), ("full", ""),
-                                         ("wall", "artificial/visc 0.3 0.5"), ("full", "artificial/visc 0.3 0.5"),
-                                         ("wall", "laminar/visc"), ("full", "laminar/visc/central"), ("wall", "laminar/visc solid/slip yes")])
+                                         ("wall", "artificial/visc 0.3 0.5"),
+                                         ("full", "artificial/visc 0.3 0.5"),
+                                         ("wall", "laminar/visc"), ("full", "laminar/visc/central"),
+                                         ("wall", "laminar/visc solid/slip yes")])
 def test_pair_law(dim, couple, more):
     """Force of the solid on every fluid particle, DESIGN 3.3, 3.4 and 3.10."""
     s, x, v, rho, solid = coupled_cloud(dim, couple, more)
@@ -102,18 +114,21 @@ def test_pair_law(dim, couple, more):
         if "artificial" in more:
             c_s = np.sqrt(1e5 / (3 * 0.4) / 1000)
             c = np.where(solid[j], min(10, c_s), 10)
-            mu = np.minimum(((v[i] - v[j]) * d).sum(1), 0) * s.kernel.h / (r**2 + 0.01 * s.kernel.h**2)
+            mu = np.minimum(((v[i] - v[j]) * d).sum(1),
+                            0) * s.kernel.h / (r**2 + 0.01 * s.kernel.h**2)
             both = both + (rho[i] + rho[j]) / 2 * V[i] * V[j] * (-0.3 * c * mu + 0.5 * mu**2)
         pair = -both[:, None] * d
         if couple == "full":
             S = sigma[j] + p[j][:, None, None] * np.diag([1, 1, dim == 3])
             pair += (V[j]**2 * solid[j])[:, None] * np.einsum("nab,nb->na", S, d)
         if "laminar" in more:
-            # to viscosity a solid is fluid, with the velocity that makes the mean of both sides its own
+            # to viscosity a solid is fluid, with the velocity that makes the mean of both sides its
+            # own
             W = s.kernel.W(r)[:, None]
             of_fluid = sum_over(j, W * v[i], s.n) / np.maximum(sum_over(j, W, s.n), 1e-300)
             seen = np.where(solid[:, None] & of_fluid.any(1, keepdims=True), 2 * v - of_fluid, v)
-            rest = np.where(solid, V, s.get("rmass") / 1000)    # volumes of the fluid are those at rest
+            # volumes of the fluid are those at rest
+            rest = np.where(solid, V, s.get("rmass") / 1000)
             u, k = v[i] - seen[j], (rest[i] * rest[j] * 2 * 20)[:, None]
             if "slip" in more:
                 k = np.where(solid[j][:, None], 0.0, k)
@@ -143,11 +158,16 @@ def test_no_tension(dim, couple):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_walls_of_held_solids_need_no_solid_style(tmp_path, dim):
-    """Solid particles that nothing integrates: pair_style fsi/fluid alone moves the water as beside fsi/solid."""
+    """Solid particles that nothing integrates: pair_style fsi/fluid alone moves the water as beside
+    fsi/solid."""
     scene = dam_gate(dim)
-    both = scene.text().replace("fix sph all fsi", "group water type 1\ngroup plate type 2\nvelocity plate set 0 0 0\nfix sph water fsi")
-    alone = "\n".join(line for line in both.splitlines() if "fix stress" not in line and "pair_coeff * * fsi/solid" not in line)
-    alone = alone.replace(f" {scene.solid_style} {scene.solid}", "").replace("hybrid ", "").replace("* * fsi/fluid", "* *")
-    end = [run(tmp_path / name, text + watch(every=50) + "run 50\n", scene_data=scene.data()).frames()[-1].of_types(1)
+    both = scene.text().replace("fix sph all fsi", "group water type 1\ngroup plate type 2\n"
+                                "velocity plate set 0 0 0\nfix sph water fsi")
+    alone = "\n".join(line for line in both.splitlines() if "fix stress" not in line
+                      and "pair_coeff * * fsi/solid" not in line)
+    alone = alone.replace(f" {scene.solid_style} {scene.solid}",
+                          "").replace("hybrid ", "").replace("* * fsi/fluid", "* *")
+    end = [run(tmp_path / name, text + watch(every=50) + "run 50\n",
+               scene_data=scene.data()).frames()[-1].of_types(1)
            for name, text in (("both", both), ("alone", alone))]
     assert difference(*end, "x") < 1e-12 and difference(*end, "v") < 1e-12

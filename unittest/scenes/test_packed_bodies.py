@@ -1,4 +1,5 @@
-"""Rigid bodies in water that is packed around them, against potential flow: a cylinder let go, and one that swings in a ring of water."""
+"""Rigid bodies in water that is packed around them, against potential flow: a cylinder let go, and
+one that swings in a ring of water."""
 
 import math
 
@@ -50,9 +51,10 @@ run 1000000
 
 @pytest.mark.parametrize("across, bound", [(10, 0.05), (20, 0.03)])
 def test_cylinder_of_twice_the_density_let_go(tmp_path, across, bound):
-    """Speed over time when it has fallen a tenth of its diameter. In potential flow the acceleration stays g (s - 1)/(s + m). Side walls at 5 D
-    raise the added mass m from 1 to 1 + pi^2/6 (D/10 D)^2; floor and surface, whose images have opposite signs, cancel. Measured: -4.0 and -2.3 %;
-    without shifting -5.6 and -5.5 %, cut from the lattice -16 and -13 %."""
+    """Speed over time when it has fallen a tenth of its diameter. In potential flow the
+    acceleration stays g (s - 1)/(s + m). Side walls at 5 D raise the added mass m from 1 to 1 +
+    pi^2/6 (D/10 D)^2; floor and surface, whose images have opposite signs, cancel. Measured: -4.0
+    and -2.3 %; without shifting -5.6 and -5.5 %, cut from the lattice -16 and -13 %."""
     run(tmp_path, FALLS.format(across=across))
     s = series.read(tmp_path / "body.csv")
     at = np.interp(0.1 * D, 0.5 - s["y"], s.time)
@@ -110,8 +112,9 @@ run 1000000
 
 
 def test_added_mass_of_a_cylinder_in_a_ring_of_water(tmp_path):
-    """Stokes 1843: rho pi a^2 (b^2 + a^2)/(b^2 - a^2) for radii a and b. From the momentum that the water got, since sound makes the force itself
-    noisy, fitted by the swing over two periods. Measured: +0.4 % (20 particles per radius: +0.5 %; cut from lattices +2.2 and +5.6 %)."""
+    """Stokes 1843: rho pi a^2 (b^2 + a^2)/(b^2 - a^2) for radii a and b. From the momentum that the
+    water got, since sound makes the force itself noisy, fitted by the swing over two periods.
+    Measured: +0.4 % (20 particles per radius: +0.5 %; cut from lattices +2.2 and +5.6 %)."""
     run(tmp_path, SWINGS)
     s = series.read(tmp_path / "force.csv")
     t, f, w = s.time, s["force"], 2 * math.pi / PERIOD

@@ -1,4 +1,5 @@
-"""No slip at walls that fsi/pack has made: flow through a round pipe, and past an array of cylinders, against closed forms."""
+"""No slip at walls that fsi/pack has made: flow through a round pipe, and past an array of
+cylinders, against closed forms."""
 
 import math
 
@@ -25,7 +26,8 @@ timestep {dt}
 def physics(dx, speed, h):
     """Slow flow: the step is that of viscosity."""
     sound = max(10 * speed, NU / dx)
-    return PHYSICS.format(dx=dx, speed=speed, sound=sound, skin=0.3 * dx, dt=0.8 * min(0.4 * dx / sound, 0.125 * h**2 / NU))
+    return PHYSICS.format(dx=dx, speed=speed, sound=sound, skin=0.3 * dx,
+                          dt=0.8 * min(0.4 * dx / sound, 0.125 * h**2 / NU))
 
 
 def end_of(tmp_path, text, time):
@@ -36,12 +38,14 @@ dump_modify d sort id time yes format float %.12g
 run $(20*v_n)
 """
     frames = dump.read(run(tmp_path, text, oil_fsi=OIL).folder / "atoms.dump")[-5:]
-    return [(f.vector()[f["type"] == 1], f.vector(("vx", "vy", "vz"))[f["type"] == 1]) for f in frames]
+    return [(f.vector()[f["type"] == 1], f.vector(("vx", "vy", "vz"))[f["type"] == 1])
+            for f in frames]
 
 
 def pipe(tmp_path, n):
-    """A pipe of radius 1, n spacings, a short period of it: mean velocity over Hagen's and Poiseuille's; place of no slip, beyond the
-    wall, in spacings: where the parabola with the pressure's curvature that fits the flow inside is zero"""
+    """A pipe of radius 1, n spacings, a short period of it: mean velocity over Hagen's and
+    Poiseuille's; place of no slip, beyond the wall, in spacings: where the parabola with the
+    pressure's curvature that fits the flow inside is zero"""
     dx, speed = 1 / n, 1e-3
     side = (n + 8) * dx
     text = start(dim=3, boundary="p p p") + f"""region box block -{side} {side} -{side} {side} 0 {6 * dx} units box
@@ -69,14 +73,16 @@ velocity water set 0 0 v_u
 
 def test_pipe(tmp_path):
     (coarse, off_coarse), (fine, off) = [pipe(tmp_path / str(n), n) for n in (7, 11)]
-    print(f"pipe, R = 7, 11 dx: {coarse:.4f}, {fine:.4f} of the mean velocity, no slip {off_coarse:+.3f}, {off:+.3f} dx beyond the wall")
+    print(f"pipe, R = 7, 11 dx: {coarse:.4f}, {fine:.4f} of the mean velocity, no slip "
+          f"{off_coarse:+.3f}, {off:+.3f} dx beyond the wall")
     assert abs(off_coarse) < 0.1 and abs(off) < 0.1
     assert abs(fine - 1) < 0.025 and abs(fine - 1) < 0.5 * abs(coarse - 1)
 
 
 def test_array_of_cylinders(tmp_path):
-    """Slow flow across a square array, a tenth of the area in cylinders of 12 spacings: force over superficial velocity (Sangani and Acrivos 1982). The
-    force is the pressure gradient times the whole area: what pushes the fluid does not push the cylinders, so theirs lacks the tenth."""
+    """Slow flow across a square array, a tenth of the area in cylinders of 12 spacings: force over
+    superficial velocity (Sangani and Acrivos 1982). The force is the pressure gradient times the
+    whole area: what pushes the fluid does not push the cylinders, so theirs lacks the tenth."""
     dx, speed, n = 1 / 12, 2e-4, 34
     side = n * dx
     c = math.pi / 4 / side**2
@@ -96,6 +102,7 @@ fix force all ave/time 10 1 10 f_2[1] file force.txt
 """
     flow = (1 - c) * np.mean([v[:, 0].mean() for _, v in end_of(tmp_path, text, 3.4 / NU)]) / speed
     force = np.loadtxt(tmp_path / "force.txt")[-20:, 1].mean() / (RHO * push * side**2)
-    print(f"array of cylinders of 12 dx: {1 / flow:.4f} of the drag, {force:.4f} of it on the cylinder, {1 - c:.4f} of the area is fluid")
+    print(f"array of cylinders of 12 dx: {1 / flow:.4f} of the drag, {force:.4f} of it on the "
+          f"cylinder, {1 - c:.4f} of the area is fluid")
     assert force == pytest.approx(1 - c, abs=0.01)
     assert 1 / flow == pytest.approx(1, abs=0.05)

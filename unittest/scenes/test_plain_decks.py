@@ -11,17 +11,21 @@ import pytest
 from fsi import check, launch, paths, scene
 
 STARTERS = ("beam", "column", "droplet", "grains")  # one deck each, which tools/run takes, too
-ALONE = (*STARTERS, "cylinder_entry", "settling_disc", "sinking_square", "slump", "yield_channel", "yield_flap")  # so have these, without pictures of their own
+# so have these, without pictures of their own
+ALONE = (*STARTERS, "cylinder_entry", "settling_disc", "sinking_square", "slump", "yield_channel",
+         "yield_flap")
 DECKS = {path.name.removeprefix("in."): path for path in sorted(paths.EXAMPLES.glob("*/in.*"))}
 STUDIED = [name for name in DECKS if name not in ALONE]
 LINES, COLUMNS = 45, 132
-MORE = {"slump": ["K", "shift", "tend"], "yield_channel": ["rows", "tend"]}   # options beside the first; else tend
+# options beside the first; else tend
+MORE = {"slump": ["K", "shift", "tend"], "yield_channel": ["rows", "tend"]}
 LONGER = {"flag_levels": 54, "turek_hron_fsi": 52}    # a cylinder and its flag
 # no if, jump, label, next, print, quit, shell
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
     "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/material",
-    "fsi/clamp", "fsi/displace", "fsi/dump", "fsi/pack", "fsi/run", "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
+    "fsi/clamp", "fsi/displace", "fsi/dump", "fsi/pack", "fsi/run", "fsi/set", "group", "include",
+    "lattice", "neigh_modify", "neighbor", "pair_coeff",
     "pair_style", "region", "run", "set", "thermo", "thermo_modify", "thermo_style", "timestep",
     "unfix", "units", "variable", "velocity"}
 DEFAULTS = ("newton on", "comm_modify mode single", "neigh_modify every 1 delay 0 check yes")
@@ -35,16 +39,19 @@ GIVEN = {
     "poiseuille": {"flow": "poiseuille"},
     "rolling_tank": {"dx": 0.004 / 3},
     "section": {"dim": 2},
-    "flag_levels": {"benchmark": "fsi2", "length": 1.5, "levels": 4, "coarse": 6.5, "mach": 20, "shift": 0.125},
+    "flag_levels": {"benchmark": "fsi2", "length": 1.5, "levels": 4, "coarse": 6.5, "mach": 20,
+                    "shift": 0.125},
     "turek_hron_csm": {"across": 10},
     "turek_hron_fsi": {"benchmark": "fsi2", "length": 1.5, "finer": 2},
 }
 # of those with many particles; else 100
 STEPS = {"cylinder_channel": 50, "cylinder_free": 10, "dam_break": 30, "dam_break_3d": 10,
          "dam_break_elastic": 3, "elastic_gate": 30, "flexible_plate": 3, "hydrostatic_plate": 10,
-         "open_channel": 50, "plate_crossflow": 3, "ring_annulus": 10, "rolling_tank": 10, "sphere": 3, "taylor_bar": 30, "turek_hron_fsi": 50}
+         "open_channel": 50, "plate_crossflow": 3, "ring_annulus": 10, "rolling_tank": 10,
+         "sphere": 3, "taylor_bar": 30, "turek_hron_fsi": 50}
 # what fix fsi warns of, in these decks alone
-ADVICE = {"ring_annulus": "speed of sound 20", "flag_levels": "spacings apart", "submerged_plate": "on the other side of a body",
+ADVICE = {"ring_annulus": "speed of sound 20", "flag_levels": "spacings apart",
+          "submerged_plate": "on the other side of a body",
           "floating_flap": "on the other side of a body"}
 STATE = "id xu yu zu vx vy vz modify format float %.17g"
 
@@ -69,7 +76,8 @@ def test_form(name):
     styles = {command.split()[2] for command in found if command.startswith("variable ")}
     assert styles <= {"index", "equal", "atom"}
     assert not set(DEFAULTS) & set(found)
-    places = [next(k for k, command in enumerate(found) if command.startswith(start) and command != "run 0")
+    places = [next(k for k, command in enumerate(found) if command.startswith(start) and command
+                   != "run 0")
               for start in ORDER]
     assert places == sorted(places)
     dumps = sum(command.startswith(("dump ", "fsi/dump ")) for command in found)
@@ -89,7 +97,8 @@ def test_who_has_a_study():
 
 
 def begun(text, steps):
-    """A deck that ends after some steps of its first run of any, and leaves its first and last state."""
+    """A deck that ends after some steps of its first run of any, and leaves its first and last
+    state."""
     text = check.spelled_out(text)
     head, whole = re.split(r"^run +(?!0 )(\S+).*", text, maxsplit=1, flags=re.M)[:2]
     return (f'{head}print "WHOLE {whole} $(dt)"\nwrite_dump all custom first {STATE}\n'

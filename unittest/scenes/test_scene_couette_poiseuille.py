@@ -6,8 +6,10 @@ from scenes import run_scene
 
 @pytest.mark.parametrize("wall", ["mirror", "particle", "solid"])
 def test_poiseuille_converges_with_second_order(tmp_path, wall):
-    # 10 and 20 particles: 1.23 to 1.34 and 0.27 to 0.33 %; by 4, and a tenth more or less for what is of higher order at 10
-    coarse, fine = (run_scene(tmp_path / str(n), "couette_poiseuille", flow="poiseuille", wall=wall, n=n, tend=0.45)["error_end"] for n in (10, 20))
+    # 10 and 20 particles: 1.23 to 1.34 and 0.27 to 0.33 %; by 4, and a tenth more or less for what
+    # is of higher order at 10
+    coarse, fine = (run_scene(tmp_path / str(n), "couette_poiseuille", flow="poiseuille", wall=wall,
+                              n=n, tend=0.45)["error_end"] for n in (10, 20))
     assert fine < 0.004
     assert 3.5 < coarse / fine < 4.7
 

@@ -16,7 +16,8 @@ def test_block_floats_as_deep_as_archimedes_says(tmp_path, ratio):
 @pytest.mark.parametrize("ratio", [0.5, 4])
 def test_block_twice_as_coarse_as_the_water(tmp_path, ratio):
     """As one of the water's spacing"""
-    figures = run_scene(tmp_path, "floating_blocks", ratio=ratio, dx=0.0125, block_dx=0.025, tend=2.0, frames=20)
+    figures = run_scene(tmp_path, "floating_blocks", ratio=ratio, dx=0.0125, block_dx=0.025,
+                        tend=2.0, frames=20)
     assert abs(figures["draft_error" if ratio < 1 else "gap_to_floor"]) < 0.5
     assert figures["particles_leaked"] == 0
 

@@ -1,4 +1,5 @@
-"""Linear theory of the floating box against identities that it was not made from, and a short form of the scene."""
+"""Linear theory of the floating box against identities that it was not made from, and a short form
+of the scene."""
 
 import sys
 
@@ -17,16 +18,19 @@ BOX = (0.11, 0.2, 0.06, 0.19)  # half of the width, depth, draft, center of rota
 @pytest.mark.parametrize("period", [0.8, 1.0, 1.4])
 @pytest.mark.parametrize("odd", [False, True])
 def test_damping_is_what_waves_carry_off(period, odd):
-    """Haskind and Newman: B = |F|^2/(2 rho g c_g), of the radiation and the diffraction problem; 1e-5: the two are solved apart."""
+    """Haskind and Newman: B = |F|^2/(2 rho g c_g), of the radiation and the diffraction problem;
+    1e-5: the two are solved apart."""
     box = theory.Box(2 * np.pi / period, *BOX)
     kd = box.k * 0.2
     group = box.omega / box.k / 2 * (1 + 2 * kd / np.sinh(2 * kd))
     assert box.omega**2 == pytest.approx(G * box.k * np.tanh(kd), rel=1e-12)
-    assert box.added_mass(odd)[1] == pytest.approx(abs(box.exciting(odd))**2 / (2 * G * group), rel=1e-5)
+    assert box.added_mass(odd)[1] == pytest.approx(abs(box.exciting(odd))**2 / (2 * G * group),
+                                                   rel=1e-5)
 
 
 def test_long_waves():
-    """Heave is lifted by the waves' own pressure, rho g times the width, and follows them; terms of the series have converged to 0.3 %."""
+    """Heave is lifted by the waves' own pressure, rho g times the width, and follows them; terms of
+    the series have converged to 0.3 %."""
     box = theory.Box(0.2, *BOX)
     assert abs(box.exciting(False)) == pytest.approx(G * 0.22, rel=3e-3)
     heave, _ = theory.response(0.2, 0.22, 0.2, 0.06, 1000.0, 13.2, 0.064, 0.19, 0.19)
@@ -43,8 +47,11 @@ def test_amplitude():
 
 
 def test_kicked_float(tmp_path):
-    """Momentum to round-off. The first swing lasts some 0.7 s: the float, 0.1 m/s at first, is still above its place and moves less than without water."""
-    figures = run_scene(tmp_path, "floating_flap", height=0, kick=0.1, tend=0.2, balance="yes", frames=2)
+    """Momentum to round-off. The first swing lasts some 0.7 s: the float, 0.1 m/s at first, is
+    still above its place and moves less than without water."""
+    figures = run_scene(tmp_path, "floating_flap", height=0, kick=0.1, tend=0.2, balance="yes",
+                        frames=2)
     assert figures["momentum_unaccounted"] < 1e-12
     assert 2.0 < figures["heave_largest"] < 20.0
-    assert (tmp_path / "snapshots.png").exists() and not list(paths.EXAMPLES.glob("floating_flap/particles.dump"))
+    assert (tmp_path / "snapshots.png").exists() and not list(
+        paths.EXAMPLES.glob("floating_flap/particles.dump"))

@@ -11,8 +11,9 @@ ROOT, TOP, THICK, DEPTH = 0.01, 0.11, 0.005, 0.16
 
 
 def test_frequencies():
-    """In vacuo Euler's cantilever, less 0.2 % of shear and rotation. In water, of a tank short enough for it, finite differences: Rayleigh's quotient with
-    the mode in vacuo, on cells half as wide as the plate is thick, which get a corner right to their width."""
+    """In vacuo Euler's cantilever, less 0.2 % of shear and rotation. In water, of a tank short
+    enough for it, finite differences: Rayleigh's quotient with the mode in vacuo, on cells half as
+    wide as the plate is thick, which get a corner right to their width."""
     half, cell = 0.1025, 0.0025
     vacuo, wet = ANALYSIS.theory(ROOT, TOP, THICK, DEPTH, half)
     length, bending = TOP - ROOT, ANALYSIS.YOUNG / (1 - ANALYSIS.POISSON**2) * THICK**3 / 12
@@ -26,11 +27,14 @@ def test_frequencies():
     matrix, source = np.zeros((nx * ny, nx * ny)), np.zeros(nx * ny)
     for i in range(nx):
         for j in range(ny):
-            k, solid = i * ny + j, i == 0 and y[j] < TOP    # the first column is the plate's half and what is above it
-            for other, inside in ((k + ny, i < nx - 1), (k - ny, i > 0), (k + 1, j < ny - 1), (k - 1, j > 0)):
+            # the first column is the plate's half and what is above it
+            k, solid = i * ny + j, i == 0 and y[j] < TOP
+            for other, inside in ((k + ny, i < nx - 1), (k - ny, i > 0), (k + 1, j < ny - 1),
+                                  (k - 1, j > 0)):
                 if not inside or solid:
                     continue
-                if other < ny and y[other] < TOP:    # the plate's face, or its end, which does not move up
+                # the plate's face, or its end, which does not move up
+                if other < ny and y[other] < TOP:
                     source[k] -= mode[j] * cell * (other == k - ny)
                 else:
                     matrix[k, k] += 1
@@ -45,7 +49,8 @@ def test_frequencies():
     added = -2 * ANALYSIS.WATER_DENSITY * (potential[1] * mode).sum() * cell
     own = ANALYSIS.DENSITY * THICK * (mode**2).sum() * cell
     assert wet == pytest.approx(vacuo * np.sqrt(own / (own + added)), rel=0.03)
-    assert ANALYSIS.theory(ROOT, TOP, THICK, DEPTH, half, sound=20.0)[1] == pytest.approx(wet, rel=0.01)
+    assert ANALYSIS.theory(ROOT, TOP, THICK, DEPTH, half,
+                           sound=20.0)[1] == pytest.approx(wet, rel=0.01)
 
 
 def test_rests(tmp_path):

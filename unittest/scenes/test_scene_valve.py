@@ -11,16 +11,19 @@ VALUES = {"sx": 0.25, "wx": 1.0}
 
 
 def frame(water, apart):
-    """Two leaflets of 4 x 20 particles, `apart` between their nearest rows, and a particle of water."""
+    """Two leaflets of 4 x 20 particles, `apart` between their nearest rows, and a particle of
+    water."""
     x, y = (grid.ravel() for grid in np.meshgrid(0.25 * np.arange(20) + 5.0, 0.25 * np.arange(4)))
     place = np.vstack([np.column_stack([x, y]), np.column_stack([x, y + 0.75 + apart]), [water]])
     count = len(x)
-    columns = {"x": place[:, 0], "y": place[:, 1], "type": np.array([2] * 2 * count + [1]), "mol": np.array([1] * count + [2] * count + [0])}
+    columns = {"x": place[:, 0], "y": place[:, 1], "type": np.array([2] * 2 * count + [1]),
+               "mol": np.array([1] * count + [2] * count + [0])}
     return dump.Frame(0, 0.0, None, columns)
 
 
 @pytest.mark.parametrize("water, inside, distance", [
-    ((6.125, 0.375), 1, 0.5**0.5),  # in the middle of a cell of the leaflet, its farthest place from particles
+    # in the middle of a cell of the leaflet, its farthest place from particles
+    ((6.125, 0.375), 1, 0.5**0.5),
     ((6.0, 0.375), 1, 0.5),
     ((6.0, -0.625), 0, 2.5),  # half of both spacings from the face's row
     ((4.0, 0.0), 0, 4.0)])
@@ -54,14 +57,17 @@ def test_pulses():
 
 
 def test_opens(tmp_path):
-    """The flow is below that of the water's inertia alone, the integral of P H/(rho X), of which the valve leaves more than half,
-    once sound has gone through the channel (0.03 s). Nothing enters the leaflets."""
+    """The flow is below that of the water's inertia alone, the integral of P H/(rho X), of which
+    the valve leaves more than half, once sound has gone through the channel (0.03 s). Nothing
+    enters the leaflets."""
     figures = run_scene(tmp_path, "valve", tend=0.06)
     valve = series.read(tmp_path / "valve.csv")
     late = valve.time > 0.04
-    bound = 100.0 * 0.02 / (1000.0 * 0.16) * 0.4 / (2.0 * np.pi) * (1.0 - np.cos(2.0 * np.pi * valve.time[late] / 0.4))
+    bound = 100.0 * 0.02 / (1000.0 * 0.16) * 0.4 / (2.0 * np.pi) * (
+        1.0 - np.cos(2.0 * np.pi * valve.time[late] / 0.4))
     share = valve["q"][late] / bound
     assert 0.5 < share.min() and share.max() < 1.0
     opening = valve["highy"] - valve["lowy"]
-    assert opening[-1] > opening[0] > 1.6e-3  # at rest 20 - 12 sin 50 - 13 sin 45 degrees [mm], to the middle of the last column
+    # at rest 20 - 12 sin 50 - 13 sin 45 degrees [mm], to the middle of the last column
+    assert opening[-1] > opening[0] > 1.6e-3
     assert figures["water_in_leaflets"] == 0 and figures["nearest_water"] > 1.0

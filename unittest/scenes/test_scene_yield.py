@@ -1,5 +1,5 @@
-"""Short forms of the scenes of fluids with a yield stress or a power law: yield_channel, slump, yield_flap. A disc that is pushed through such a fluid
-or let go in it.
+"""Short forms of the scenes of fluids with a yield stress or a power law: yield_channel, slump,
+yield_flap. A disc that is pushed through such a fluid or let go in it.
 """
 
 import math
@@ -11,7 +11,8 @@ from scenes import run, run_scene
 
 from fsi import paths
 
-# 10 particles per diameter, tau_y D/(K U) = 1000, m U/D = 100: nearly a rigid, perfectly plastic soil
+# 10 particles per diameter, tau_y D/(K U) = 1000, m U/D = 100: nearly a rigid, perfectly plastic
+# soil
 DISC = """units si
 dimension 2
 boundary f f p
@@ -46,15 +47,19 @@ run 1000000
 
 
 def test_power_law_in_a_channel(tmp_path):
-    # 20 rows. Closed form of mean over largest: (n+1)/(2n+1); the scene has -0.1 % with 40 rows, of second order
-    figures = run_scene(tmp_path, "yield_channel", rows=20, law="power 1 0.5 viscosity/limits 0 1000", tend=3)
+    # 20 rows. Closed form of mean over largest: (n+1)/(2n+1); the scene has -0.1 % with 40 rows, of
+    # second order
+    figures = run_scene(tmp_path, "yield_channel", rows=20,
+                        law="power 1 0.5 viscosity/limits 0 1000", tend=3)
     assert figures["mean_over_largest"] == pytest.approx(0.75, rel=0.01)
     assert figures["velocity_error"] < 0.015
 
 
 def test_yield_stress_in_a_channel(tmp_path):
-    # 20 rows, of which 5 yield at either wall. Center, +0.1 % (with the kernel's smoothing of the rate +1.8 %), of the law with m = 100:
-    # (1-0.5)^2/2 + 0.5/100. Stopping times: finite differences, those of the scene's analysis for the regularized law
+    # 20 rows, of which 5 yield at either wall. Center, +0.1 % (with the kernel's smoothing of the
+    # rate +1.8 %), of the law with m = 100:
+    # (1-0.5)^2/2 + 0.5/100. Stopping times: finite differences, those of the scene's analysis for
+    # the regularized law
     figures = run_scene(tmp_path, "yield_channel", rows=20, tend=3)
     assert figures["center_velocity"] == pytest.approx(0.13, rel=0.01)
     assert figures["stops_0.1"] == pytest.approx(0.133, rel=0.03)
@@ -62,8 +67,10 @@ def test_yield_stress_in_a_channel(tmp_path):
 
 
 def test_slump(tmp_path):
-    # 10 rows, reference: the lubrication equation of the law with m by finite differences. Spread: -0.2 % at 2 s, -2.3 % at 25 s. Lubrication is
-    # of first order in the square of the slope, here up to 0.1. The closed form of the arrested layer is 6 % wider than that at 8 s
+    # 10 rows, reference: the lubrication equation of the law with m by finite differences. Spread:
+    # -0.2 % at 2 s, -2.3 % at 25 s. Lubrication is
+    # of first order in the square of the slope, here up to 0.1. The closed form of the arrested
+    # layer is 6 % wider than that at 8 s
     figures = run_scene(tmp_path, "slump", dx=0.01, tend=8)
     assert figures["error_of_spread_2_s"] < 0.04 and figures["error_of_spread_8_s"] < 0.04
     assert 0.9 * 0.2805 < figures["spread"] < 0.2805
@@ -71,8 +78,10 @@ def test_slump(tmp_path):
 
 
 def test_flap_in_mud(tmp_path):
-    # 3 particles across. Mud and flap creep to their rest with a time of 0.9 s. Force on the flap over that of finite differences: +6 % at 3 s, -2.4 %
-    # at rest. Deflection for that force, finite elements: -2.2 %, of which the flap of 6 particles by itself has -0.7 %. Balance at rest: 1e-6
+    # 3 particles across. Mud and flap creep to their rest with a time of 0.9 s. Force on the flap
+    # over that of finite differences: +6 % at 3 s, -2.4 %
+    # at rest. Deflection for that force, finite elements: -2.2 %, of which the flap of 6 particles
+    # by itself has -0.7 %. Balance at rest: 1e-6
     figures = run_scene(tmp_path, "yield_flap", dx=0.0033333333333, tend=4)
     assert figures["balance"] == pytest.approx(4.35, rel=0.002)
     assert figures["force"] == pytest.approx(4.27, rel=0.03)
@@ -81,16 +90,19 @@ def test_flap_in_mud(tmp_path):
 
 def test_solids_without_sub_steps_keep_the_viscous_limit(tmp_path):
     deck = (paths.EXAMPLES / "yield_flap" / "in.yield_flap").read_text()
-    deck = re.sub(r"run +1000000000.*", "run 8", deck.replace(" substeps auto", "").replace("thermo        1000", "thermo 1"))
+    deck = re.sub(r"run +1000000000.*", "run 8",
+                  deck.replace(" substeps auto", "").replace("thermo        1000", "thermo 1"))
     steps = re.findall(r"^ +8 +\S+ +(\S+)", run(tmp_path, deck).output, re.M)
     limit = (1.5 * 0.0025)**2 * 1000 / (8 * (10 + 50 * 20))  # h^2/8nu, nothing yields yet
     assert float(steps[0]) == pytest.approx(limit, rel=1e-6)
 
 
 def test_disc_that_is_pushed(tmp_path):
-    """The limit load of a rough disc is (4 sqrt(2) + 2 pi) tau_y D, of a smooth one (6 + pi) tau_y D (Randolph and Houlsby, Geotechnique 34
-    (1984) 613): below it a disc stays where it is. Mean over two periods of the box's sound: -2 % with 10 particles per diameter, -8 % with 16.
-    Bounds: the layer that yields next to the disc is D/30 thick, less than a spacing, so that the disc may seem smoother than it is.
+    """The limit load of a rough disc is (4 sqrt(2) + 2 pi) tau_y D, of a smooth one (6 + pi) tau_y
+    D (Randolph and Houlsby, Geotechnique 34 (1984) 613): below it a disc stays where it is. Mean
+    over two periods of the box's sound: -2 % with 10 particles per diameter, -8 % with 16. Bounds:
+    the layer that yields next to the disc is D/30 thick, less than a spacing, so that the disc may
+    seem smoother than it is.
     """
     run(tmp_path, DISC)
     t, force = np.loadtxt(tmp_path / "force.txt", skiprows=1).T
@@ -101,20 +113,25 @@ def test_disc_that_is_pushed(tmp_path):
 
 @pytest.mark.parametrize("part", (0.8, 1.25))
 def test_disc_that_is_let_go(tmp_path, part):
-    """Its weight W is this part of the limit load W_c of a rough disc, its mass M, its velocity V, A the area of the box.
+    """Its weight W is this part of the limit load W_c of a rough disc, its mass M, its velocity V,
+    A the area of the box.
 
-    Below the limit it creeps. The law with m takes at least the power tau_y rate - tau_y/(e m), and rates alone W_c V/tau_y, so
-    V <= tau_y A/(e m (W_c - W)). It takes at most that of a Newtonian fluid of K + tau_y m, whose drag is less than in a circle within the box.
-    Above the limit it falls: energy M V^2/2 <= (W - W_c) x + tau_y A t/(e m). Velocities: 0.42 and 4.3 m/s.
+    Below the limit it creeps. The law with m takes at least the power tau_y rate - tau_y/(e m), and
+    rates alone W_c V/tau_y, so V <= tau_y A/(e m (W_c - W)). It takes at most that of a Newtonian
+    fluid of K + tau_y m, whose drag is less than in a circle within the box. Above the limit it
+    falls: energy M V^2/2 <= (W - W_c) x + tau_y A t/(e m). Velocities: 0.42 and 4.3 m/s.
     """
     limit, K, m, radii = (4 * math.sqrt(2) + 2 * math.pi) * 1000, 10, 5, 6
     weight, creep = part * limit, 1000 * (36 - math.pi / 4) / (math.e * m)
-    deck = DISC.replace("1000 1 1 100", f"1000 {K} 1 {m}").replace("$(c_f[1])", "$(xcm(disc,x)) $(vcm(disc,x))").replace(
-        "fix 5 disc fsi/move linear 1 0 0 units box", f"fix 8 disc gravity $({weight}/mass(disc)) vector 1 0 0\nfix 5 disc rigid single")
+    deck = DISC.replace("1000 1 1 100", f"1000 {K} 1 {m}").replace(
+        "$(c_f[1])", "$(xcm(disc,x)) $(vcm(disc,x))").replace(
+        "fix 5 disc fsi/move linear 1 0 0 units box",
+        f"fix 8 disc gravity $({weight}/mass(disc)) vector 1 0 0\nfix 5 disc rigid single")
     run(tmp_path, deck)
     t, x, v = np.loadtxt(tmp_path / "force.txt", skiprows=1).T
     if part < 1:
-        newtonian = weight / (K + 1000 * m) * (math.log(radii) - (radii**2 - 1) / (radii**2 + 1)) / (4 * math.pi)
+        newtonian = weight / (K + 1000 * m) * (math.log(radii) - (radii**2 - 1)
+                                               / (radii**2 + 1)) / (4 * math.pi)
         assert newtonian < v[t > 0.1].min() and v[t > 0.1].max() < creep / (limit - weight)
         assert v[-1] == pytest.approx(v[t > 0.2].mean(), rel=0.05)
     else:

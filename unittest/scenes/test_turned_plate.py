@@ -1,4 +1,5 @@
-"""A plate of five particles, made along the axes and turned, as doc/src/Howto_turned.rst says: dry, and in water that is packed around it."""
+"""A plate of five particles, made along the axes and turned, as doc/src/Howto_turned.rst says: dry,
+and in water that is packed around it."""
 
 import math
 
@@ -8,7 +9,8 @@ from scenes import lammps
 
 from fsi import series
 
-# The deck of examples/oscillating_plate: the first mode's velocity in the frame of the plate, which is turned with it.
+# The deck of examples/oscillating_plate: the first mode's velocity in the frame of the plate, which
+# is turned with it.
 DRY = """units si
 dimension 2
 boundary f f p
@@ -42,7 +44,8 @@ thermo_style custom step time
 run 1000000
 """
 
-# A disc of water, free at its rim, has no direction, nor has a weight across the plate. It bends to its first stop.
+# A disc of water, free at its rim, has no direction, nor has a weight across the plate. It bends to
+# its first stop.
 WET = """units si
 dimension 2
 boundary f f p
@@ -99,14 +102,16 @@ def half_period(time, tip):
 
 @pytest.mark.parametrize("angle", [5, 10, 22, 45])
 def test_period(tmp_path, angle):
-    """0.2553 s: finite elements of unittest/elements.py (scene oscillating_plate). Five particles lack 0.3 %; cut from a lattice at 10 degrees: +17 %."""
+    """0.2553 s: finite elements of unittest/elements.py (scene oscillating_plate). Five particles
+    lack 0.3 %; cut from a lattice at 10 degrees: +17 %."""
     of = [2 * half_period(*swing(tmp_path / str(a), DRY, a)) for a in (0, angle)]
     assert of[1] == pytest.approx(of[0], rel=1e-6)  # the same sums in another order
     assert of[1] == pytest.approx(0.2553, rel=0.01)
 
 
 def test_in_water(tmp_path):
-    """The water's lattice is turned against the plate's by 22 degrees. Measured: deflection 0.0 %, time 0.1 % off; the bound is the issue's 1 %."""
+    """The water's lattice is turned against the plate's by 22 degrees. Measured: deflection 0.0 %,
+    time 0.1 % off; the bound is the issue's 1 %."""
     stops = []
     for angle in (0, 22):
         time, tip = swing(tmp_path / str(angle), WET, angle)

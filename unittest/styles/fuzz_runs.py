@@ -1,8 +1,11 @@
-"""Decks of two or three runs with something given again, taken away, restarted, deleted or created between them, made by chance.
+"""Decks of two or three runs with something given again, taken away, restarted, deleted or created
+between them, made by chance.
 
-    FSI_FUZZ=1000 tools/pytest -q -n 2 unittest/styles/test_fuzz.py -k runs        a thousand decks instead of the suite's
+    FSI_FUZZ=1000 tools/pytest -q -n 2 unittest/styles/test_fuzz.py -k runs        a thousand decks
+    instead of the suite's
 
-A deck ends well if it ends, or with an error in words; with numbers that are finite, and without energy that comes from nothing.
+A deck ends well if it ends, or with an error in words; with numbers that are finite, and without
+energy that comes from nothing.
 """
 
 import random
@@ -13,7 +16,8 @@ from redefined import MATERIALS, OTHER, SCENES, deck, part
 from scenes import lammps
 
 LIMIT = 60  # seconds for a deck of a second or less, on a busy machine
-# What starts at up to 0.6 m/s under gravity, for a hundred steps of 1e-4 s, at a speed of sound of 10 m/s: a kick of the sound is seen
+# What starts at up to 0.6 m/s under gravity, for a hundred steps of 1e-4 s, at a speed of sound of
+# 10 m/s: a kick of the sound is seen
 FASTEST = 3.0
 WATER = "region spot{0} block {1} {2} {3} {4} INF INF units box"
 
@@ -23,11 +27,15 @@ class Maker:
 
     def __init__(self, seed):
         self.rng = random.Random(seed)
-        self.scene = self.rng.choice(("tank", "tank", "updated", "open", "stream", "levels", "levels"))
+        self.scene = self.rng.choice(("tank", "tank", "updated", "open", "stream", "levels",
+                                      "levels"))
         self.now = dict(SCENES[self.scene][0])
         self.types = int(re.search(r"create_box (\d+)", SCENES[self.scene][1])[1])
-        # bodies whose density is that of their neighbors are in tension at faces and holes, and tear
-        self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t and "solid ratio" not in t} for (scene, name), texts in OTHER.items() if scene == self.scene}
+        # bodies whose density is that of their neighbors are in tension at faces and holes, and
+        # tear
+        self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t
+                              and "solid ratio" not in t} for (scene, name), texts in OTHER.items()
+                       if scene == self.scene}
         self.gone, self.spots, self.files = [], 0, 0
         for name in self.rng.sample(sorted(self.others), self.rng.choice((0, 0, 1, 2))):
             self.choose(name)
@@ -48,11 +56,15 @@ class Maker:
         self.run(self.rng.choice((None, None, 0)))
         for _ in range(self.rng.choice((1, 2))):
             for _ in range(self.rng.choice((1, 1, 2, 3))):
-                self.rng.choice((self.again, self.again, self.again, self.another, self.another, self.another, self.take_away, self.bring_back, self.restart,
-                                 self.delete, self.create, self.set_type, self.look, self.small, self.small))()
+                self.rng.choice((self.again, self.again, self.again, self.another, self.another,
+                                 self.another, self.take_away, self.bring_back, self.restart,
+                                 self.delete, self.create, self.set_type, self.look, self.small,
+                                 self.small))()
             self.run()
-        self.lines.append("variable vmax equal vmax\nvariable fastest atom sqrt(vx*vx+vy*vy)\ncompute fastest all reduce max v_fastest\n"
-                          "compute end all fsi/atom rho\ncompute thin all reduce min c_end\nvariable fast equal c_fastest\nvariable low equal c_thin\nrun 0\n"
+        self.lines.append("variable vmax equal vmax\nvariable fastest atom sqrt(vx*vx+vy*vy)\n"
+                          "compute fastest all reduce max v_fastest\n"
+                          "compute end all fsi/atom rho\ncompute thin all reduce min c_end\n"
+                          "variable fast equal c_fastest\nvariable low equal c_thin\nrun 0\n"
                           'print "END ${fast} ${low}"')
 
     # ---- what is done between runs ----
@@ -67,7 +79,8 @@ class Maker:
             self.lines.append(self.now["coeff"])
 
     def names(self):
-        return [n for n in self.now if n not in ("make", "settings", "coeff") and n not in self.gone]
+        return [n for n in self.now if n not in ("make", "settings", "coeff")
+                and n not in self.gone]
 
     def again(self):
         self.give(self.rng.choice(self.names()))
@@ -98,54 +111,72 @@ class Maker:
     def restart(self):
         file = f"file{self.files}.restart"
         self.files += 1
-        commands = [self.now[n] for n in self.now if n not in ("make", "gone") and n not in self.gone]
-        variables = "\n".join(line for line in self.now["make"].splitlines() if line.startswith(("variable", "region zone", "region near")))
+        commands = [self.now[n] for n in self.now if n not in ("make", "gone")
+                    and n not in self.gone]
+        variables = "\n".join(line for line in self.now["make"].splitlines()
+                              if line.startswith(("variable", "region zone", "region near")))
         style = self.scene in ("tank", "updated")
-        self.lines += [f"write_restart {file}", "clear", f"read_restart {file}", variables + "\nvariable zero equal 0", *commands]
+        self.lines += [f"write_restart {file}", "clear", f"read_restart {file}",
+                       variables + "\nvariable zero equal 0", *commands]
         if not style and self.rng.random() < 0.5:
             self.lines.remove(self.now["pair"])
             self.lines.insert(self.lines.index(f"read_restart {file}") + 1, self.now["pair"])
 
     def spot(self, low=0.0):
         self.spots += 1
-        x, y, w = self.rng.uniform(-0.02, 0.2), self.rng.uniform(low, 0.12), self.rng.uniform(0.01, 0.06)
+        x, y, w = self.rng.uniform(-0.02, 0.2), self.rng.uniform(low,
+                                                                 0.12), self.rng.uniform(0.01, 0.06)
         self.lines.append(WATER.format(self.spots, x, x + w, y, y + w))
         return f"spot{self.spots}"
 
     def delete(self):
-        self.lines.append(f"delete_atoms region {self.spot()} compress {self.rng.choice(('yes', 'no'))}")
+        self.lines.append(
+            f"delete_atoms region {self.spot()} compress {self.rng.choice(('yes', 'no'))}")
 
     def create(self):
         kind = self.rng.choice(range(1, self.types + 1))
         spot = self.spot(0.17 if self.rng.random() < 0.7 else 0.0)
         number, seed = self.rng.choice((1, 5, 20)), self.rng.randrange(1, 10000)
         apart = 1.2 if kind == 2 else 0.8    # not squeezed into a body
-        self.lines.append(f"lattice sq 0.01 origin 0.5 0.5 0\ncreate_atoms {kind} random {number} {seed} {spot} overlap {apart} maxtry 100")
+        self.lines.append(f"lattice sq 0.01 origin 0.5 0.5 0\ncreate_atoms {kind} random {number} "
+                          f"{seed} {spot} overlap {apart} maxtry 100")
         if self.rng.random() < 0.5:
             self.lines.append(f"set region {spot} mol {self.rng.choice((0, 1, 7))}")
         groups = {1: "water", 2: "water" if self.scene == "levels" else "beam", 3: "piston"}
         if self.rng.random() < 0.8:
             self.lines.append(f"group {groups[kind]} type {kind}")
             if self.scene in ("tank", "updated") and kind < 3:
-                self.lines.append(f"group made region {spot}\ngroup moves union moves made\ngroup made delete")
+                self.lines.append(f"group made region {spot}\ngroup moves union moves made\n"
+                                  "group made delete")
 
     def set_type(self):
-        self.lines.append(f"set region {self.spot()} type {self.rng.choice(range(1, self.types + 1))}")
+        self.lines.append(
+            f"set region {self.spot()} type {self.rng.choice(range(1, self.types + 1))}")
 
     def look(self):
         self.files += 1
         self.lines.append(self.rng.choice((
-            f"write_dump all custom look{self.files} id type x y vx c_state[*]", "run 0", f"write_data look{self.files}.data", f"write_restart look{self.files}",
-            "run 3 pre no", "variable look equal c_energy\nprint ${look}", "variable look equal f_particle[1]\nprint ${look}", "info computes fixes",
-            "variable look equal f_dt[7]\nprint ${look}", "variable look equal c_probe[1]\nprint ${look}", "fsi/set water density 1000")))
+            f"write_dump all custom look{self.files} id type x y vx c_state[*]", "run 0",
+            f"write_data look{self.files}.data", f"write_restart look{self.files}",
+            "run 3 pre no", "variable look equal c_energy\nprint ${look}",
+            "variable look equal f_particle[1]\nprint ${look}", "info computes fixes",
+            "variable look equal f_dt[7]\nprint ${look}",
+            "variable look equal c_probe[1]\nprint ${look}", "fsi/set water density 1000")))
 
     def small(self):
         self.lines.append(self.rng.choice((
-            "timestep 5e-5", "reset_timestep 0", "reset_timestep 1000", "velocity water set 0.1 0.1 0 units box", "displace_atoms water move 0.001 0 0 units box",
-            "neigh_modify every 2 delay 0 check yes", "atom_modify sort 5 0.01", "balance 1.0 shift xy 5 1.1", "variable s delete", "variable u delete",
-            "region zone delete", "region water delete", "neighbor 0.004 bin", "comm_modify cutoff 0.06", "newton off", "reset_atoms id", "change_box all y final -0.06 0.36 units box",
-            "comm_style tiled\nbalance 1.1 rcb", "run 5 every 2 \"variable k equal 1\"", "group water clear\ngroup water type 1", "set type 1 mol 0",
-            "thermo_style custom step ke c_state[1]", "variable zero delete", "run 5 upto", "minimize 0 0 1 1")))
+            "timestep 5e-5", "reset_timestep 0", "reset_timestep 1000",
+            "velocity water set 0.1 0.1 0 units box",
+            "displace_atoms water move 0.001 0 0 units box",
+            "neigh_modify every 2 delay 0 check yes", "atom_modify sort 5 0.01",
+            "balance 1.0 shift xy 5 1.1", "variable s delete", "variable u delete",
+            "region zone delete", "region water delete", "neighbor 0.004 bin",
+            "comm_modify cutoff 0.06", "newton off", "reset_atoms id",
+            "change_box all y final -0.06 0.36 units box",
+            "comm_style tiled\nbalance 1.1 rcb", "run 5 every 2 \"variable k equal 1\"",
+            "group water clear\ngroup water type 1", "set type 1 mol 0",
+            "thermo_style custom step ke c_state[1]", "variable zero delete", "run 5 upto",
+            "minimize 0 0 1 1")))
 
     def text(self):
         return "\n".join(self.lines) + "\n"
@@ -155,9 +186,12 @@ def verdict(result):
     """What is wrong with how a deck ended, and a word for the statistics"""
     errors = [line for line in result.output.splitlines() if "ERROR" in line]
     if result.status:
-        if not errors or any(w in result.output for w in ("egmentation", "Bus error", "SIGABRT", "terminate called", "corrupted", "free():")):
+        if not errors or any(w in result.output for w in ("egmentation", "Bus error", "SIGABRT",
+                                                          "terminate called", "corrupted",
+                                                          "free():")):
             return "crash", f"crash, status {result.status}"
-        if re.search(r"nan|inf\b|not finite", errors[0].split("(src")[0]) and not re.search(r"infin", errors[0]):
+        if re.search(r"nan|inf\b|not finite",
+                     errors[0].split("(src")[0]) and not re.search(r"infin", errors[0]):
             return "not finite", errors[0]
         return "error", re.sub(r"-?\d[\d.]*(e[-+]?\d+)?", "#", errors[0].split(" (")[0])[:90]
     end = re.search(r"^END (\S+) (\S+)$", result.output, re.M)

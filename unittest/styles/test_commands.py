@@ -51,7 +51,8 @@ def test_read_dump(tmp_path):
     assert difference(first, again, "stress") < 1e-10
 
 
-@pytest.mark.parametrize("command", ["special_bonds lj/coul 0.5 0.5 0.5", "suffix omp", "suffix kk"])
+@pytest.mark.parametrize("command",
+                         ["special_bonds lj/coul 0.5 0.5 0.5", "suffix omp", "suffix kk"])
 def test_changes_nothing(tmp_path, plain, command):
     """Weights of bonded neighbors, of which there are none; a suffix that no style here has."""
     last = run(tmp_path, cell("", STEPS, before=[command])).frames()[-1]

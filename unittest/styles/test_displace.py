@@ -1,4 +1,5 @@
-"""Command fsi/displace: a body takes the place of as much fluid as it covers, wherever the two lattices lie."""
+"""Command fsi/displace: a body takes the place of as much fluid as it covers, wherever the two
+lattices lie."""
 
 import re
 
@@ -33,11 +34,15 @@ fsi/displace {groups}
 write_dump all custom left.dump id type x y z modify sort id time yes
 run 0
 """
-FLAT = {"dim": 2, "z": "p", "low": -0.005, "high": 0.005, "lattice": "sq", "half": 0, "depth": "INF INF", "fine": 0.01, "origin": "0.5 0.5 0", "bottom": 0.07,
+FLAT = {"dim": 2, "z": "p", "low": -0.005, "high": 0.005, "lattice": "sq", "half": 0,
+        "depth": "INF INF", "fine": 0.01, "origin": "0.5 0.5 0", "bottom": 0.07,
         "top": 0.13, "mid": 0, "angle": 0, "groups": "water body"}
-DEEP = {"dim": 3, "z": "f", "low": -0.1, "high": 0.3, "lattice": "sc", "half": 0.5, "depth": "0 0.1", "origin": "0.5 0.5 0.5", "mid": 0.05}
-CASES = {"same lattice": {}, "half a spacing aside": {"origin": "0 0.5 0"}, "between": {"origin": "0.37 0.71 0"}, "turned": {"angle": 30},
-         "a finer one": {"fine": 0.004}, "half out": {"bottom": 0.15, "top": 0.25}, "thinner than a cell": {"fine": 0.0025, "bottom": 0.0975, "top": 0.1025},
+DEEP = {"dim": 3, "z": "f", "low": -0.1, "high": 0.3, "lattice": "sc", "half": 0.5,
+        "depth": "0 0.1", "origin": "0.5 0.5 0.5", "mid": 0.05}
+CASES = {"same lattice": {}, "half a spacing aside": {"origin": "0 0.5 0"},
+         "between": {"origin": "0.37 0.71 0"}, "turned": {"angle": 30},
+         "a finer one": {"fine": 0.004}, "half out": {"bottom": 0.15, "top": 0.25},
+         "thinner than a cell": {"fine": 0.0025, "bottom": 0.0975, "top": 0.1025},
          "3D": DEEP, "3D, turned": {**DEEP, "angle": 20}}
 
 
@@ -48,11 +53,13 @@ def left(folder, ranks=1, **changes):
 
 @pytest.mark.parametrize("name", CASES)
 def test_what_goes_is_what_the_body_covers(tmp_path, name):
-    """Half a particle is what a whole number of them allows; of the half that is out of the water nothing is displaced."""
+    """Half a particle is what a whole number of them allows; of the half that is out of the water
+    nothing is displaced."""
     given = {**FLAT, **CASES[name]}
     frame = left(tmp_path, **CASES[name])
     cell = 0.01**given["dim"]
-    bodies = np.sum(frame["type"] == 2) * given["fine"]**given["dim"] * (0.5 if name == "half out" else 1)
+    bodies = np.sum(frame["type"] == 2) * given["fine"]**given["dim"] * (0.5 if name == "half out"
+                                                                         else 1)
     taken = 30 * 20 * (1 if given["dim"] == 2 else 10) - np.sum(frame["type"] == 1)
     assert abs(taken - bodies / cell) <= 0.5 + 1e-9
     if name == "same lattice":
@@ -62,15 +69,19 @@ def test_what_goes_is_what_the_body_covers(tmp_path, name):
 
 
 def test_ranks(tmp_path):
-    """The same particles go on any number of ranks, also where rows on both sides are half covered."""
+    """The same particles go on any number of ranks, also where rows on both sides are half
+    covered."""
     one, four = (left(tmp_path / str(ranks), ranks, origin="0.5 0 0") for ranks in (1, 4))
-    places = [{(kind, round(x, 6), round(y, 6)) for kind, x, y in zip(f["type"], f["x"], f["y"])} for f in (one, four)]
+    places = [{(kind, round(x, 6), round(y, 6)) for kind, x, y in zip(f["type"], f["x"], f["y"])}
+              for f in (one, four)]
     assert places[0] == places[1]
 
 
 @pytest.mark.parametrize("groups, error", [
-    ("water", r"Illegal fsi/displace command: missing argument"), ("water nobody", r"Fsi/displace group-ID nobody does not exist"),
-    ("body body", r"Fsi/displace group-ID body has no particle of a fluid"), ("water water", r"Fsi/displace group-ID water has no particle of a body")])
+    ("water", r"Illegal fsi/displace command: missing argument"),
+    ("water nobody", r"Fsi/displace group-ID nobody does not exist"),
+    ("body body", r"Fsi/displace group-ID body has no particle of a fluid"),
+    ("water water", r"Fsi/displace group-ID water has no particle of a body")])
 def test_refusals(tmp_path, groups, error):
     done = lammps(tmp_path, DECK.format(**{**FLAT, "groups": groups}))
     assert done.status != 0 and re.search(error, done.errors[0])

@@ -1,4 +1,5 @@
-"""Mutated input for the parsers, and decks made by chance: every answer is an error or acceptance, never a crash. Deterministic."""
+"""Mutated input for the parsers, and decks made by chance: every answer is an error or acceptance,
+never a crash. Deterministic."""
 
 import os
 import random
@@ -16,10 +17,12 @@ INPUTS = 10000
 FRESH = 250  # inputs before the next LAMMPS instance
 
 COMMANDS = [
-    "pair_style fsi/fluid sound 10 eos tait background 100 tension yes artificial/visc 0.1 0.1 laminar/visc",
+    "pair_style fsi/fluid sound 10 eos tait background 100 tension yes artificial/visc 0.1 0.1 "
+    "laminar/visc",
     "pair_style fsi/fluid sound 10 density/diffusion 0.1 couple full extrapolate no surface 0.9",
     "pair_style fsi/solid artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected",
-    "pair_style fsi/solid/tl artificial/visc 0.1 0.1 hourglass 0.1 law svk plane strain gradient linear volumes plain",
+    "pair_style fsi/solid/tl artificial/visc 0.1 0.1 hourglass 0.1 law svk plane strain gradient "
+    "linear volumes plain",
     "pair_style hybrid fsi/fluid sound 10 couple wall fsi/solid gradient plain",
     "pair_coeff * * materials.fsi water plate",
     "pair_coeff * * materials.fsi water tank",
@@ -37,10 +40,13 @@ COMMANDS = [
     "compute c all fsi/energy",
     "run 0",
 ]
-MATERIALS = materials(water="fluid rho 1000 viscosity 1e-3", plate="solid rho 1000 young 2e6 poisson 0.4", tank=WALL)
-WORDS = ["0", "-1", "1e400", "nan", "-inf", "1e-320", "99999999999", "3.5", "*", "NULL", "INF", "yes", "", "\t", "é", "x" * 80, "$", "&", '"',
+MATERIALS = materials(water="fluid rho 1000 viscosity 1e-3",
+                      plate="solid rho 1000 young 2e6 poisson 0.4", tank=WALL)
+WORDS = ["0", "-1", "1e400", "nan", "-inf", "1e-320", "99999999999", "3.5", "*", "NULL", "INF",
+         "yes", "", "\t", "é", "x" * 80, "$", "&", '"',
          "fluid", "solid", "rho", "all", "xlo", "EDGE", "off", "auto", "#", "%s%n", "0x10", "1.5.2"]
-SETUP = box("-0.1 0.3 -0.1 0.3", 0.01, water="0 0.05 0 0.05", plate="0.05 0.08 0 0.05") + "timestep 1e-5\n"
+SETUP = box("-0.1 0.3 -0.1 0.3", 0.01, water="0 0.05 0 0.05",
+            plate="0.05 0.08 0 0.05") + "timestep 1e-5\n"
 
 
 def mutated(text, rng):
@@ -65,15 +71,19 @@ def mutated(text, rng):
             text = " ".join(words) or " "
         else:
             k = rng.randrange(max(1, len(text)))
-            text = text[:k] + rng.choice(["", chr(rng.randrange(1, 256)), text[k:k + 1] * 2, "\n"]) + text[k + 1:]
+            text = (text[:k] + rng.choice(["", chr(rng.randrange(1, 256)), text[k:k + 1] * 2, "\n"])
+                    + text[k + 1:])
     return text
 
 
 def test_parsers_survive(tmp_path):
-    done = subprocess.run([sys.executable, __file__, str(INPUTS)], cwd=tmp_path, env=launch.environment(), capture_output=True, text=True,
+    done = subprocess.run([sys.executable, __file__, str(INPUTS)], cwd=tmp_path,
+                          env=launch.environment(), capture_output=True, text=True,
                           errors="replace", timeout=300, check=False)
     last = (tmp_path / "last.txt").read_text(errors="replace")
-    assert done.returncode == 0, f"ended with {done.returncode} in\n{last}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+    assert (
+        done.returncode
+        == 0), f"ended with {done.returncode} in\n{last}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
     errors, accepted = map(int, done.stdout.split()[-2:])
     # neither is everything refused nor everything taken, or the mutations are of no use
     assert errors + accepted == INPUTS and errors > INPUTS / 4 and accepted > INPUTS / 20
@@ -84,7 +94,8 @@ FIRST = 35  # and 44, 48, 53 and 61 found crashes
 
 @pytest.mark.parametrize("seed", range(FIRST, FIRST + int(os.environ.get("FSI_FUZZ", "30"))))
 def test_runs_survive(tmp_path, seed):
-    """Decks made by chance with something given again, deleted, made or restarted between their runs (fuzz_runs.py)."""
+    """Decks made by chance with something given again, deleted, made or restarted between their
+    runs (fuzz_runs.py)."""
     import fuzz_runs  # pylint: disable=import-outside-toplevel
 
     maker, (kind, why), output = fuzz_runs.one(tmp_path, seed)
@@ -102,7 +113,8 @@ def _run(inputs):
             lmp = module.lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
             lmp.commands_string(SETUP)
         material = rng.random() < 0.2
-        command = "pair_coeff * * materials.fsi water plate" if material else mutated(rng.choice(COMMANDS), rng).replace("\n", " ")
+        command = "pair_coeff * * materials.fsi water plate" if material else mutated(
+            rng.choice(COMMANDS), rng).replace("\n", " ")
         # LAMMPS' own range of types "**" ends in an uncaught std::invalid_argument (utils::bounds)
         command = re.sub(r"\*[0-9]*(?=\*)", "", command)
         content = mutated(MATERIALS, rng) if material or n % FRESH == 0 else None
@@ -117,7 +129,8 @@ def _run(inputs):
             if failed:
                 lmp.lib.lammps_get_last_error_message(lmp.lmp, _buffer(), 1000)
         counts[0 if failed else 1] += 1
-        # LAMMPS leaves a hole in its list if an error ends the definition of a fix that is there already
+        # LAMMPS leaves a hole in its list if an error ends the definition of a fix that is there
+        # already
         for fix in lmp.available_ids("fix"):
             if lmp.has_id("fix", fix):    # some take another one with them
                 lmp.command(f"unfix {fix}")

@@ -1,5 +1,5 @@
-"""Particles of other pair styles beside the package's: ignored, moved, turned; pair_style fsi/grain against numpy, Archimedes and the
-terminal velocity of a sphere."""
+"""Particles of other pair styles beside the package's: ignored, moved, turned; pair_style fsi/grain
+against numpy, Archimedes and the terminal velocity of a sphere."""
 
 import re
 
@@ -15,8 +15,10 @@ FILE = materials(water=f"fluid rho 1000 viscosity {ETA}", thin="fluid rho 800 vi
 G = 9.81
 
 
-def deck(dim, grains="", style="fsi sphere", fluid="", moved="all", newton="on", pairs="pair_coeff 2 2 none", styles="fsi/grain", coupled="fsi/grain", **more):
-    """Water, type 1, read from water.data by a region of given particles, and grains, type 2, of diameter 0.4 dx."""
+def deck(dim, grains="", style="fsi sphere", fluid="", moved="all", newton="on",
+         pairs="pair_coeff 2 2 none", styles="fsi/grain", coupled="fsi/grain", **more):
+    """Water, type 1, read from water.data by a region of given particles, and grains, type 2, of
+    diameter 0.4 dx."""
     head = start("atom_modify map array", "comm_modify vel yes", f"newton {newton}", dim=dim,
                  boundary=f"f f {'p' if dim == 2 else 'f'}", style=f"hybrid {style}")
     return head + f"""region box block {more.get('box', '0 0.2 0 0.2')} {f'{-DX / 2} {DX / 2}' if dim == 2 else '0 0.2'}
@@ -36,10 +38,12 @@ timestep 1e-4
 
 
 class Grains(Scene):
-    """LAMMPS in this process with water particles x, v and grains; diameters d, density of the grains 2500."""
+    """LAMMPS in this process with water particles x, v and grains; diameters d, density of the
+    grains 2500."""
 
     def __init__(self, folder, dim, x, v, grains, speeds, d, commands="", **options):
-        (folder / "test.fsi").write_text(FILE.replace(f"viscosity {ETA}", f"viscosity {options.pop('eta', ETA)}"))
+        (folder / "test.fsi").write_text(FILE.replace(f"viscosity {ETA}",
+                                                      f"viscosity {options.pop('eta', ETA)}"))
         self.lmp = Library(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
         self.n, self.dim = len(x), dim
         text = deck(dim, **options).replace("test.fsi", str(folder / "test.fsi"))
@@ -47,9 +51,11 @@ class Grains(Scene):
         self.do(head + "create_box 2 box")
         points, velocities = np.concatenate([x, grains]), np.concatenate([v, speeds])
         types = [1] * self.n + [2] * len(grains)
-        self.lmp.create_atoms(len(points), list(range(1, len(points) + 1)), types, points.ravel().tolist(), velocities.ravel().tolist())
+        self.lmp.create_atoms(len(points), list(range(1, len(points) + 1)), types,
+                              points.ravel().tolist(), velocities.ravel().tolist())
         assert self.lmp.get_natoms() == len(points)
-        self.do(f"set type 1 diameter {DX}\nset type 2 diameter {d}\nset type 2 density{'/disc' if dim == 2 else ''} 2500")
+        self.do(f"set type 1 diameter {DX}\nset type 2 diameter {d}\n"
+                f"set type 2 density{'/disc' if dim == 2 else ''} 2500")
         self.do(tail)
         self.do(commands)
 
@@ -68,7 +74,8 @@ def drag(rho, eta, d, speed):
 
 
 def expected(dim, x, v, m, rho, grains, speeds, d, floor=None):
-    """Forces on grains and on the fluid: weighted least squares of the pressure, Schiller and Naumann's drag."""
+    """Forces on grains and on the fluid: weighted least squares of the pressure, Schiller and
+    Naumann's drag."""
     kernel = Kernel("wendland", dim, H * DX)
     on_fluid, on_grains = np.zeros_like(x), np.zeros_like(grains)
     p = C**2 * (rho - 1000)
@@ -83,7 +90,8 @@ def expected(dim, x, v, m, rho, grains, speeds, d, floor=None):
         s = np.clip(fit[0] / (np.linalg.norm(fit[1:]) * d / 2), -1, 1)
         F = -V * fit[1:] * ((2 + 3 * s - s**3) / 4 if floor is not None else 1)
         u = (w @ v / w.sum() - speed)[:dim]
-        F = F + spheres * drag(w @ rho / w.sum(), ETA, d, np.linalg.norm(u)) * u * min(1, 4 * w.sum())
+        F = F + spheres * drag(w @ rho / w.sum(), ETA, d,
+                               np.linalg.norm(u)) * u * min(1, 4 * w.sum())
         on_grains[k, :dim] = F
         on_fluid -= w[:, None] / w.sum() * on_grains[k]
     return on_grains, on_fluid
@@ -104,13 +112,15 @@ def scene(dim, seed=1):
 @pytest.mark.parametrize("dim", (2, 3))
 @pytest.mark.parametrize("fluid", ("", "tension yes"))
 def test_forces(tmp_path, dim, fluid):
-    """All forces against numpy, to round-off of sums of some 100 terms; without the fluid's own, which is there when grains are not."""
+    """All forces against numpy, to round-off of sums of some 100 terms; without the fluid's own,
+    which is there when grains are not."""
     x, v, rho, grains, speeds = scene(dim)
     d, forces = 0.4 * DX, []
     for with_grains in (True, False):
         with Grains(tmp_path, dim, x, v, grains, speeds, d, fluid=fluid) as s:
             s.run()
-            s.lmp.numpy.extract_atom("rho")[np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + 6])[:len(x)]] = rho
+            s.lmp.numpy.extract_atom(
+                "rho")[np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + 6])[:len(x)]] = rho
             if not with_grains:
                 s.do("delete_atoms group grains compress no")
             m = s.run().get("rmass")[:len(x)]
@@ -124,16 +134,20 @@ def test_forces(tmp_path, dim, fluid):
 
 @pytest.mark.parametrize("style", ("fsi sphere", "sphere fsi"))
 def test_beside(tmp_path, style):
-    """Grains that nothing couples to the water: the water is the one without grains, bit for bit, and has the lattice's mass in either
-    order of the atom styles; the grains fall freely, turned by no torque; a second fix may move them instead."""
+    """Grains that nothing couples to the water: the water is the one without grains, bit for bit,
+    and has the lattice's mass in either order of the atom styles; the grains fall freely, turned by
+    no torque; a second fix may move them instead."""
     x = lattice((8, 6), DX, 0.05)
     v = np.zeros_like(x)
-    grains, speeds = np.array([[0.08, 0.08, 0], [0.085, 0.08, 0.0]]), np.array([[0.1, 0, 0], [0, 0.2, 0]])
+    grains, speeds = np.array([[0.08, 0.08, 0], [0.085, 0.08, 0.0]]), np.array(
+        [[0.1, 0, 0], [0, 0.2, 0]])
     states = []
-    options = dict(style=style, styles="", coupled="none", commands="fix g all gravity 9.81 vector 0 -1 0")
+    options = dict(style=style, styles="", coupled="none",
+                   commands="fix g all gravity 9.81 vector 0 -1 0")
     for case in ("grains", "none", "nve"):
         with Grains(tmp_path, 2, x, v, grains, speeds, 0.004, **(options if case != "nve" else {
-                **options, "moved": "water", "commands": options["commands"] + "\nfix n grains nve/sphere"})) as s:
+                **options, "moved": "water", "commands": options["commands"]
+                + "\nfix n grains nve/sphere"})) as s:
             if case == "none":
                 s.do("delete_atoms group grains")
             s.run(50)
@@ -154,11 +168,13 @@ def hydrostatic(x, top):
 
 
 def test_edge_of_a_column(tmp_path):
-    """A grain that sees one upright row of fluid, straight to 1e-5 of a spacing, gets no force across it: no gradient is known there."""
+    """A grain that sees one upright row of fluid, straight to 1e-5 of a spacing, gets no force
+    across it: no gradient is known there."""
     random = np.random.default_rng(3)
     x = np.zeros((9, 3))
     x[:, 0], x[:, 1] = 0.05 + 1e-7 * random.uniform(-1, 1, 9), 0.05 + DX * np.arange(9)
-    with Grains(tmp_path, 2, x, np.zeros_like(x), np.array([[0.05 + 1.5 * DX, 0.092, 0.0]]), np.zeros((1, 3)), 0.4 * DX, fluid="tension yes") as s:
+    with Grains(tmp_path, 2, x, np.zeros_like(x), np.array([[0.05 + 1.5 * DX, 0.092, 0.0]]),
+                np.zeros((1, 3)), 0.4 * DX, fluid="tension yes") as s:
         s.run()
         s.lmp.numpy.extract_atom("rho")[:9] = random.uniform(1000, 1010, 9)
         f = s.run().get("f")[9]
@@ -167,21 +183,24 @@ def test_edge_of_a_column(tmp_path):
 
 @pytest.mark.parametrize("dim", (2, 3))
 def test_one_neighbor(tmp_path, dim):
-    """A grain that sees one fluid particle knows no gradient: no force, whichever way it lies; round-off over round-off was several
-    weights at one angle in ten. As the second comes within the support the force begins at 0."""
+    """A grain that sees one fluid particle knows no gradient: no force, whichever way it lies;
+    round-off over round-off was several weights at one angle in ten. As the second comes within the
+    support the force begins at 0."""
     angles = np.deg2rad(np.arange(0, 360, 10))
     for second in (None, 3e-3, 0.3):  # within the support, over h
         x, grains = [], []
         for k, angle in enumerate(angles):
             e = np.array([np.cos(angle), np.sin(angle), 0])
-            center = np.array([0.1 + DX * 10 * (k % 6), 0.1 + DX * 10 * (k // 6), 0.1 if dim == 3 else 0.0])
+            center = np.array([0.1 + DX * 10 * (k % 6), 0.1 + DX * 10 * (k // 6),
+                               0.1 if dim == 3 else 0.0])
             grains.append(center + 0.015 * e)
             x.append(center)
             if second:
                 x.append(grains[-1] + e * (2 - second) * H * DX)
         x, grains = np.array(x), np.array(grains)
         box = "0 0.8 0 0.8"
-        with Grains(tmp_path, dim, x, np.zeros_like(x), grains, np.zeros_like(grains), 0.4 * DX, fluid="tension yes", box=box) as s:
+        with Grains(tmp_path, dim, x, np.zeros_like(x), grains, np.zeros_like(grains), 0.4 * DX,
+                    fluid="tension yes", box=box) as s:
             s.run()
             s.lmp.numpy.extract_atom("rho")[np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + len(grains)])[:len(x)]] = \
                 1000 + (np.arange(len(x)) % 2 if second else 2.5)  # p = 1000 Pa, or 0 and 400 Pa
@@ -191,8 +210,9 @@ def test_one_neighbor(tmp_path, dim):
 
 @pytest.mark.parametrize("dim", (2, 3))
 def test_archimedes(tmp_path, dim):
-    """Still water whose pressure is a plane: a sphere under water is pushed up by the weight of its volume, one in the surface by that
-    of its cap, one above it not; to round-off, since the fit is exact for a plane."""
+    """Still water whose pressure is a plane: a sphere under water is pushed up by the weight of its
+    volume, one in the surface by that of its cap, one above it not; to round-off, since the fit is
+    exact for a plane."""
     n = (12, 10) if dim == 2 else (8, 8, 8)
     x = lattice(n, DX, 0.05)
     x[:, dim:] = 0
@@ -202,7 +222,8 @@ def test_archimedes(tmp_path, dim):
     still = np.zeros_like(grains)
     with Grains(tmp_path, dim, x, np.zeros_like(x), grains, still, d) as s:
         s.run()
-        s.lmp.numpy.extract_atom("rho")[np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + 6])[:len(x)]] = hydrostatic(x, top)
+        s.lmp.numpy.extract_atom("rho")[np.argsort(
+            s.lmp.numpy.extract_atom("id")[:len(x) + 6])[:len(x)]] = hydrostatic(x, top)
         f = s.run().get("f")[len(x):]
     V = np.pi / 6 * d**3 if dim == 3 else np.pi / 4 * d**2
     t = np.clip(depths + d / 2, 0, d)  # wet height
@@ -213,8 +234,9 @@ def test_archimedes(tmp_path, dim):
 
 @pytest.mark.parametrize("dim, d, eta", ((3, 2e-4, 0.001), (3, 2e-4, 1e-7), (2, 5e-4, 0.001)))
 def test_terminal_velocity(tmp_path, dim, d, eta):
-    """A sphere of density 2500 sinks in held water at the speed where Schiller and Naumann's drag is its weight less that of the water.
-    Re = 6, 1.9e5 and 40. The rest is what is left of exp(-t/tau) after 12 tau, and the water's density, which varies by 1e-3."""
+    """A sphere of density 2500 sinks in held water at the speed where Schiller and Naumann's drag
+    is its weight less that of the water. Re = 6, 1.9e5 and 40. The rest is what is left of
+    exp(-t/tau) after 12 tau, and the water's density, which varies by 1e-3."""
     n = (12, 16) if dim == 2 else (8, 16, 8)
     x = lattice(n, DX, 0.03)
     x[:, dim:] = 0
@@ -223,11 +245,14 @@ def test_terminal_velocity(tmp_path, dim, d, eta):
     for _ in range(200):  # until drag vt is the weight
         vt = 0.5 * (vt + 1500 * V * G / drag(1000, eta, d, vt))
     tau = 2500 * V / drag(1000, eta, d, vt)
-    start = np.array([[0.03 + n[0] * DX / 2, top - 3 * DX, 0.03 + n[2] * DX / 2 if dim == 3 else 0.0]])
-    with Grains(tmp_path, dim, x, np.zeros_like(x), start, np.zeros((1, 3)), d, moved="grains", eta=eta,
+    start = np.array(
+        [[0.03 + n[0] * DX / 2, top - 3 * DX, 0.03 + n[2] * DX / 2 if dim == 3 else 0.0]])
+    with Grains(tmp_path, dim, x, np.zeros_like(x), start, np.zeros((1, 3)), d, moved="grains",
+                eta=eta,
                 commands=f"fix g grains gravity {G} vector 0 -1 0\ntimestep {tau / 40}") as s:
         s.run()
-        s.lmp.numpy.extract_atom("rho")[np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + 1])[:len(x)]] = hydrostatic(x, top)
+        s.lmp.numpy.extract_atom("rho")[np.argsort(
+            s.lmp.numpy.extract_atom("id")[:len(x) + 1])[:len(x)]] = hydrostatic(x, top)
         v = s.run(480).get("v")[-1]
         assert s.get("x")[-1][1] > 0.03 + DX  # still in the water
     assert -v[1] == pytest.approx(vt, rel=3e-3)
@@ -248,10 +273,12 @@ reset_atoms id sort yes
 
 def flood(dim, **options):
     """A column of water with grains in it, which collide as GRANULAR has it, begins to fall."""
-    form = dict(lattice="sq" if dim == 2 else "sc", dx=DX, coarse=0.8 * DX, shake=0 if dim == 2 else 4e-4, half=0 if dim == 2 else 0.5,
+    form = dict(lattice="sq" if dim == 2 else "sc", dx=DX, coarse=0.8 * DX, shake=0 if dim == 2
+                else 4e-4, half=0 if dim == 2 else 0.5,
                 z="INF INF" if dim == 2 else "0.02 0.08", disc="/disc" if dim == 2 else "")
     contact = "hooke 5e3 0.5 tangential linear_history 2e3 0.5 0.5 damping velocity"
-    return deck(dim, box="0 0.12 0 0.14", atoms=COLUMN.format(**form), styles="fsi/grain granular", pairs=f"pair_coeff 2 2 granular {contact}", **{
+    return deck(dim, box="0 0.12 0 0.14", atoms=COLUMN.format(**form), styles="fsi/grain granular",
+                pairs=f"pair_coeff 2 2 granular {contact}", **{
         "fluid": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1", **options}) + f"""
 fix g all gravity {G} vector 0 -1 0
 fix w water fsi/wall/mirror xlo 0.02 ylo 0.02{'' if dim == 2 else ' zlo 0.02 zhi 0.08'}
@@ -272,11 +299,13 @@ dump_modify d sort id time yes format float %.17g
 @pytest.mark.slow
 @pytest.mark.parametrize("dim", (2, 3))
 def test_ranks(tmp_path, dim):
-    """Forces of 1, 2 and 4 ranks, newton on and off, agree to round-off at the start; all of the state after 100 steps."""
+    """Forces of 1, 2 and 4 ranks, newton on and off, agree to round-off at the start; all of the
+    state after 100 steps."""
     results = {}
     for ranks, newton in ((1, "on"), (2, "on"), (4, "on"), (2, "off")):
         text = flood(dim, newton=newton) + DUMP.format(file="d.dump") + "run 100\n"
-        results[ranks, newton] = run(tmp_path / f"{ranks}{newton}", text, ranks, test_fsi=FILE).frames("d.dump")
+        results[ranks, newton] = run(tmp_path / f"{ranks}{newton}", text, ranks,
+                                     test_fsi=FILE).frames("d.dump")
     first = results[1, "on"]
     for frames in results.values():
         for k, tolerance in ((0, 1e-12), (1, 1e-9)):
@@ -289,7 +318,8 @@ def test_ranks(tmp_path, dim):
 def test_momentum(tmp_path, dim):
     """Without walls and weight water and grains keep their momentum, though each alone does not."""
     x, v, rho, grains, speeds = scene(dim)
-    with Grains(tmp_path, dim, x, v, grains, speeds, 0.004, fluid="artificial/visc 0.05 0 laminar/visc") as s:
+    with Grains(tmp_path, dim, x, v, grains, speeds, 0.004,
+                fluid="artificial/visc 0.05 0 laminar/visc") as s:
         s.run()
         n, m = len(x), s.get("rmass")[:, None]
         before = m * s.get("v")
@@ -299,15 +329,18 @@ def test_momentum(tmp_path, dim):
 
 
 def test_energy(tmp_path):
-    """What grains take is entry 10 of compute fsi/energy: the balance of the water closes as without them, but for an error of first
-    order in the time step, half a percent of what they take."""
+    """What grains take is entry 10 of compute fsi/energy: the balance of the water closes as
+    without them, but for an error of first order in the time step, half a percent of what they
+    take."""
     x, v, rho, grains, speeds = scene(2)
     errors = []
     for steps in (100, 200):
         change = {}
         for coupled in ("fsi/grain", "none"):
-            with Grains(tmp_path, 2, x, 0.1 * v, grains, speeds, 0.004, fluid="laminar/visc", coupled=coupled, styles=coupled.replace("none", ""),
-                        commands=f"compute e all fsi/energy\ntimestep {5e-3 / steps}\nthermo_style custom step c_e c_e[10]") as s:
+            with Grains(tmp_path, 2, x, 0.1 * v, grains, speeds, 0.004, fluid="laminar/visc",
+                        coupled=coupled, styles=coupled.replace("none", ""),
+                        commands=f"compute e all fsi/energy\ntimestep {5e-3 / steps}\n"
+                        "thermo_style custom step c_e c_e[10]") as s:
                 s.run(0)
                 start = s.lmp.extract_compute("e", 0, 0)
                 s.run(steps)
@@ -319,21 +352,26 @@ def test_energy(tmp_path):
 
 
 def test_restart(tmp_path):
-    """A run that goes on from a restart file is the uninterrupted one bit for bit, contacts with friction and all. With pair_style given anew
-    LAMMPS 4 Jul 2026 would forget the contacts."""
-    one = run(tmp_path / "one", flood(2) + "restart 100 r.*\n" + DUMP.format(file="d.dump") + "run 200\n", 2, test_fsi=FILE)
+    """A run that goes on from a restart file is the uninterrupted one bit for bit, contacts with
+    friction and all. With pair_style given anew LAMMPS 4 Jul 2026 would forget the contacts."""
+    one = run(tmp_path / "one", flood(2) + "restart 100 r.*\n" + DUMP.format(file="d.dump")
+              + "run 200\n", 2, test_fsi=FILE)
     text = flood(2)
     again = "newton on\ncomm_modify vel yes\nread_restart ../one/r.100\n" + "\n".join(
-        line for line in text[text.index("pair_coeff"):].splitlines() if not line.startswith(("velocity", "group")))
-    two = run(tmp_path / "two", again + "\nrestart 100 other.*\n" + DUMP.format(file="d.dump") + "run 100\n", 2, test_fsi=FILE)
+        line for line in text[text.index("pair_coeff"):].splitlines()
+        if not line.startswith(("velocity", "group")))
+    two = run(tmp_path / "two", again + "\nrestart 100 other.*\n" + DUMP.format(file="d.dump")
+              + "run 100\n", 2, test_fsi=FILE)
     assert differing(one.frames("d.dump")[-1], two.frames("d.dump")[-1]) == []
     omega = one.frames("d.dump")[-1]["omegaz"]
     assert np.abs(omega).max() > 0.1  # grains roll
 
 
 def test_data_file(tmp_path):
-    """write_data and read_data keep masses and diameters of grains, and masses and densities of the water."""
-    state = "write_dump all custom {}.dump id type mass radius x vx modify sort id format float %.15g\n"
+    """write_data and read_data keep masses and diameters of grains, and masses and densities of the
+    water."""
+    state = ("write_dump all custom {}.dump id type mass radius x vx modify sort id format float "
+             "%.15g\n")
     run(tmp_path, flood(2) + "run 20\nwrite_data end.data\n" + state.format("a"), 2, test_fsi=FILE)
     head = deck(2).split("region box")[0]
     run(tmp_path, head + "read_data end.data\n" + state.format("b"), test_fsi=FILE)
@@ -342,15 +380,20 @@ def test_data_file(tmp_path):
 
 
 def test_order(tmp_path):
-    """The history of contacts would be lost if fix fsi sorted particles before it is stored: LAMMPS asks for the other order."""
+    """The history of contacts would be lost if fix fsi sorted particles before it is stored: LAMMPS
+    asks for the other order."""
     text, fix = flood(2), "fix sph all fsi 0.01 wendland 1.5\n"
-    done = lammps(tmp_path, text.replace(fix, "").replace("pair_style hybrid", fix + "pair_style hybrid") + "run 0\n", test_fsi=FILE)
+    done = lammps(tmp_path,
+                  text.replace(fix, "").replace("pair_style hybrid", fix + "pair_style hybrid")
+                  + "run 0\n", test_fsi=FILE)
     assert done.status and "must be defined before fix sph" in done.errors[0]
 
 
 def test_rolling(tmp_path):
-    """A grain on an incline of gravity rolls without sliding: a = 5/7 g sin(angle) of a solid sphere, moved and turned by fix fsi."""
-    text = deck(2, atoms=f"create_atoms 1 single 0.01 0.15 0\ncreate_atoms 2 single 0.05 {0.01 - 6.67e-6} 0\nset type 2 diameter 0.02\n"
+    """A grain on an incline of gravity rolls without sliding: a = 5/7 g sin(angle) of a solid
+    sphere, moved and turned by fix fsi."""
+    text = deck(2, atoms="create_atoms 1 single 0.01 0.15 0\n"
+                f"create_atoms 2 single 0.05 {0.01 - 6.67e-6} 0\nset type 2 diameter 0.02\n"
                 "set type 2 density/disc 2500", pairs="pair_coeff 2 2 none") + f"""
 fix g grains gravity {G} vector 0.5 -0.8660254037844386 0
 fix floor grains wall/gran granular hooke 1e6 300 tangential linear_history 5e5 1 0.9 damping velocity yplane 0 NULL
@@ -367,13 +410,20 @@ print "speed $(v_v)"
 
 
 BAD = {
-    "no radius": (("atom_style hybrid fsi sphere", "atom_style fsi"), r"set type 2 diameter|requires atom_style hybrid fsi sphere|diameter"),
-    "argument": (("fsi/grain\npair_coeff * *", "fsi/grain drag\npair_coeff * *"), "takes no arguments, but has drag"),
-    "coefficient": (("pair_coeff 1 2 fsi/grain", "pair_coeff 1 2 fsi/grain 0.44"), "takes the type of a fluid and that of grains alone, but has 0.44"),
-    "two fluids": (("pair_coeff 2 2 none", "pair_coeff 2 2 fsi/grain"), "type 2 has no material and type 2 no material: expected a fluid and grains"),
-    "materials": (("test.fsi water NULL", "test.fsi water thin"), "type 1 has a fluid and type 2 a fluid: expected a fluid and grains"),
-    "no mass": (("fsi sphere", "sphere fsi"), "Atom 2 is of type 2, which has no material, and has no mass"),
-    "no diameter": (("set type 2 diameter 0.0001\n", ""), r"atom 2 of type 2 has the diameter 1: expected grains smaller than .* support is 0\.03\. Use set type 2 diameter"),
+    "no radius": (("atom_style hybrid fsi sphere", "atom_style fsi"),
+                  r"set type 2 diameter|requires atom_style hybrid fsi sphere|diameter"),
+    "argument": (("fsi/grain\npair_coeff * *", "fsi/grain drag\npair_coeff * *"),
+                 "takes no arguments, but has drag"),
+    "coefficient": (("pair_coeff 1 2 fsi/grain", "pair_coeff 1 2 fsi/grain 0.44"),
+                    "takes the type of a fluid and that of grains alone, but has 0.44"),
+    "two fluids": (("pair_coeff 2 2 none", "pair_coeff 2 2 fsi/grain"),
+                   "type 2 has no material and type 2 no material: expected a fluid and grains"),
+    "materials": (("test.fsi water NULL", "test.fsi water thin"),
+                  "type 1 has a fluid and type 2 a fluid: expected a fluid and grains"),
+    "no mass": (("fsi sphere", "sphere fsi"),
+                "Atom 2 is of type 2, which has no material, and has no mass"),
+    "no diameter": (("set type 2 diameter 0.0001\n", ""), r"atom 2 of type 2 has the diameter 1: "
+                    r"expected grains smaller than .* support is 0\.03\. Use set type 2 diameter"),
     "step": (("timestep 1e-4", "timestep 10"), "drag stops atom|Mach"),
 }
 
@@ -381,8 +431,10 @@ BAD = {
 @pytest.mark.parametrize("what", BAD)
 def test_bad_input(tmp_path, what):
     (old, new), message = BAD[what]
-    text = deck(2, atoms="create_atoms 1 single 0.1 0.1 0\ncreate_atoms 2 single 0.1 0.102 0\nset type 2 diameter 0.0001\n"
-                + ("set type 2 density/disc 2500\n" if what != "no mass" else "") + "velocity all set 0.1 0 0")
+    text = deck(2, atoms="create_atoms 1 single 0.1 0.1 0\ncreate_atoms 2 single 0.1 0.102 0\n"
+                "set type 2 diameter 0.0001\n"
+                + ("set type 2 density/disc 2500\n" if what != "no mass" else "")
+                + "velocity all set 0.1 0 0")
     assert old in text
     result = lammps(tmp_path, text.replace(old, new) + "run 1\n", test_fsi=FILE)
     assert result.status and len(result.errors) == 1

@@ -12,26 +12,33 @@ SHAKEN = "reset_atoms id sort yes\ndisplace_atoms all random 0.005 0.005 0 1 uni
 
 def stream(folder, u, steps, ranks=1, grid="* * *", start="", more="", check="yes", y="p"):
     """The run and how many lists it made."""
-    text = deck("0 1 0 1", 0.05, INVISCID, more, f"neigh_modify every 1 delay 0 check {check}", "thermo_modify lost error", water="", boundary=f"p {y} p",
-                before=[f"processors {grid}"], made=f"{start}variable u atom {u}\nvelocity all set v_u 0 0 units box", dt=1e-3, skin=0.41,
+    text = deck("0 1 0 1", 0.05, INVISCID, more, f"neigh_modify every 1 delay 0 check {check}",
+                "thermo_modify lost error", water="", boundary=f"p {y} p",
+                before=[f"processors {grid}"],
+                made=f"{start}variable u atom {u}\nvelocity all set v_u 0 0 units box", dt=1e-3,
+                skin=0.41,
                 fluid="sound 20 tension yes density/diffusion 0.1")
     result = run(folder, text + watch(every=steps) + f"run {steps}\n", ranks)
     return result, int(re.search(r"Neighbor list builds = (\d+)", result.output)[1])
 
 
-@pytest.mark.parametrize("u, more, last", [("1", "", 21), ("2*(y>0.5)-1", "", 11), ("1", "fix w all fsi/wall/mirror ylo 0 velocity 0 1e-9 0", 11)],
+@pytest.mark.parametrize("u, more, last",
+                         [("1", "", 21), ("2*(y>0.5)-1", "", 11),
+                          ("1", "fix w all fsi/wall/mirror ylo 0 velocity 0 1e-9 0", 11)],
                          ids=["stream", "two streams", "a wall that moves"])
 def test_lists_last_as_long_as_pairs_allow(tmp_path, u, more, last):
-    """A stream of 1 m/s goes 1 mm a step. Lists that hold for half a skin, 10.25 mm, are new in the 11th step; those that go along for half a skin
-    in the 21st. Where streams go both ways, or walls move, nothing goes along. The first step of a run has new ones in any case."""
+    """A stream of 1 m/s goes 1 mm a step. Lists that hold for half a skin, 10.25 mm, are new in the
+    11th step; those that go along for half a skin in the 21st. Where streams go both ways, or walls
+    move, nothing goes along. The first step of a run has new ones in any case."""
     steps = 100
-    assert stream(tmp_path, u, steps, more=more, y="f" if more else "p")[1] == 1 + (steps - 1) // last
+    assert stream(tmp_path, u, steps, more=more,
+                  y="f" if more else "p")[1] == 1 + (steps - 1) // last
 
 
 @pytest.mark.parametrize("ranks, grid", [(1, "1 1 1"), (2, "1 2 1"), (4, "2 2 1")])
 def test_nothing_depends_on_it(tmp_path, ranks, grid):
-    """Two streams of 0.75 m/s against each other, each on ranks of its own: the same as with lists that are new in every step, to round-off. Pairs that lists
-    lack show at 1e-6 and above."""
+    """Two streams of 0.75 m/s against each other, each on ranks of its own: the same as with lists
+    that are new in every step, to round-off. Pairs that lists lack show at 1e-6 and above."""
     u = "1.5*(y>0.5)-0.75"
     want, every = stream(tmp_path / "every", u, 60, start=SHAKEN, check="no")
     got, some = stream(tmp_path / "some", u, 60, ranks, grid, SHAKEN)

@@ -10,10 +10,13 @@ def build(dim, couple, more="", viscosity=0):
     x, v = cloud([10, 10] if dim == 2 else [6, 6, 6], dx, jitter=0.1, vmax=0.5)
     v[:, 0] += 0.3
     solid = x[:, 0] > x[:, 0].mean()
-    return Scene(x, v, dim=dim, dx=dx, hdx=1.3, dt=5e-4, type=1 + solid, mol=1 + solid, materials=(f"{WATER} viscosity {viscosity}", RUBBER),
+    return Scene(x, v, dim=dim, dx=dx, hdx=1.3, dt=5e-4, type=1 + solid, mol=1 + solid,
+                 materials=(f"{WATER} viscosity {viscosity}", RUBBER),
                  box=((-20,) * 3, (20,) * 3),
-                 fluid=f"sound 10 couple {couple} artificial/visc 0.1 0.1 density/diffusion 0.1 {more}",
-                 solid="artificial/visc 0.2 0 artificial/stress 0.3 gradient " + ("corrected" if couple == "wall" else "plain"))
+                 fluid=f"sound 10 couple {couple} artificial/visc 0.1 0.1 density/diffusion 0.1 "
+                 f"{more}",
+                 solid="artificial/visc 0.2 0 artificial/stress 0.3 gradient "
+                 + ("corrected" if couple == "wall" else "plain"))
 
 
 def angular(s):
@@ -27,13 +30,15 @@ def test_kept(dim, couple):
     with build(dim, couple) as s:
         s.run()
         m, v = s.get("rmass")[:, None], s.get("v")
-        scale, spin_scale = np.abs(m * v).sum(), (m[:, 0] * np.linalg.norm(np.cross(s.get("x") - s.get("x").mean(0), v),
+        scale, spin_scale = np.abs(m * v).sum(), (
+            m[:, 0] * np.linalg.norm(np.cross(s.get("x") - s.get("x").mean(0), v),
                                                                             axis=1)).sum()
         p0, l0, v0 = s.momentum(), angular(s), s.get("v")
         s.run(1000)
         drift = np.abs(s.momentum() - p0).max() / scale
         spin = np.abs(angular(s) - l0).max() / spin_scale
-        print(f"momentum, {dim}D couple {couple}: linear drift {drift:.1e}, angular drift {spin:.1e} in 1000 steps")
+        print(f"momentum, {dim}D couple {couple}: linear drift {drift:.1e}, angular drift "
+              f"{spin:.1e} in 1000 steps")
         assert np.abs(s.get("v") - v0).max() > 0.1            # things did happen
         # round-off: 1e-16 per step and particle, of both signs; measured 1e-16 to 3e-16
         assert drift < 1e-14
@@ -58,7 +63,8 @@ def test_angular_momentum_of_a_viscous_fluid(dim, form, kept):
     """Of the two forms of laminar viscosity only the central one keeps it."""
     x, v = cloud([10, 10] if dim == 2 else [6, 6, 6], 0.1, jitter=0.1, vmax=0.5)
     with Scene(x, v, dim=dim, dx=0.1, hdx=1.3, dt=5e-4, box=((-20,) * 3, (20,) * 3),
-               materials=("fluid rho 1000 viscosity 20",), fluid=f"sound 10 tension yes {form}") as s:
+               materials=("fluid rho 1000 viscosity 20",),
+               fluid=f"sound 10 tension yes {form}") as s:
         s.run()
         scale = (s.get("rmass") * np.linalg.norm(np.cross(s.get("x"), s.get("v")), axis=1)).sum()
         start = angular(s)

@@ -1,4 +1,5 @@
-"""Command fsi/pack: a body and the water around it along a surface. Sums, masses, ranks, files, and flows that know the lattice."""
+"""Command fsi/pack: a body and the water around it along a surface. Sums, masses, ranks, files, and
+flows that know the lattice."""
 
 import math
 import re
@@ -37,13 +38,16 @@ run 0
 
 def deck(surface, dim=2, region="", fluid="water", steps="", dx=DX):
     z, near = ("-0.15 0.15", "-0.145 0.145") if dim == 3 else (f"{-dx / 2} {dx / 2}", "INF INF")
-    return DECK.format(dim=dim, z=z, near=near, lattice="sc" if dim == 3 else "sq", origin=0.5 if dim == 3 else 0, dx=dx, region=region,
-                       fluid=fluid, surface=surface, steps=steps, water="create_atoms 1 box" if fluid != "NULL" else "")
+    return DECK.format(dim=dim, z=z, near=near, lattice="sc" if dim == 3 else "sq",
+                       origin=0.5 if dim == 3 else 0, dx=dx, region=region,
+                       fluid=fluid, surface=surface, steps=steps, water="create_atoms 1 box"
+                       if fluid != "NULL" else "")
 
 
 def state(folder):
     lines = (folder / "end.dump").read_text().splitlines()
-    table = np.array([line.split() for line in lines[lines.index("ITEM: ATOMS id type mass x y z") + 1:]], float)
+    table = np.array(
+        [line.split() for line in lines[lines.index("ITEM: ATOMS id type mass x y z") + 1:]], float)
     return table[:, 1].astype(int), table[:, 2], table[:, 3:]
 
 
@@ -76,14 +80,17 @@ def test_disc(tmp_path):
     body, near = kind == 2, abs(r - R) < 6 * DX
     area = math.pi * R**2
     assert body.sum() == round(area / DX**2)
-    assert mass[body].sum() == pytest.approx(1500 * area, rel=2e-4)   # the volume is found by cells of a quarter of the spacing
+    # the volume is found by cells of a quarter of the spacing
+    assert mass[body].sum() == pytest.approx(1500 * area, rel=2e-4)
     assert len(x) == 900 and np.ptp(mass[body]) == 0.0
     assert r[body].max() < R - 0.499 * DX and r[~body].min() > R + 0.499 * DX
     of = sums(x, np.where(body, mass / 1500, mass / 1000), 0.3, 1.5 * DX, 2)[near]
     largest, rms = residue(done.output)
-    # of a lattice that the disc cuts it is 0.4; what is printed is what numpy finds at the end, one step later
+    # of a lattice that the disc cuts it is 0.4; what is printed is what numpy finds at the end, one
+    # step later
     assert of.max() < 0.05 and math.sqrt((of**2).mean()) < 0.01
-    assert largest == pytest.approx(of.max(), rel=0.1) and rms == pytest.approx(math.sqrt((of**2).mean()), rel=0.1)
+    assert largest == pytest.approx(of.max(), rel=0.1) and rms == pytest.approx(
+        math.sqrt((of**2).mean()), rel=0.1)
 
 
 def test_lattice_cut_by_the_same_disc_is_far_from_it(tmp_path):
@@ -119,7 +126,8 @@ def test_a_residue_that_stays_is_said(tmp_path, steps, loose):
 
 def test_water_created_twice_goes_apart(tmp_path):
     """The kernel's gradient leaves two at one place there."""
-    text = deck("region s", region=DISC).replace("group water", "create_atoms 1 single 0.075 0.025 0 units box\ngroup water")
+    text = deck("region s", region=DISC).replace(
+        "group water", "create_atoms 1 single 0.075 0.025 0 units box\ngroup water")
     lammps(tmp_path, text)
     _, _, x = state(tmp_path)
     apart = np.linalg.norm(x[:, None] - x, axis=2) + np.eye(len(x))
@@ -152,7 +160,8 @@ region s block -0.06 0.06 -0.03 0.03 INF INF units box rotate v_turned 0 0 0 0 0
 @pytest.mark.parametrize("angle", [5, 22.5, 45])
 def test_water_around_a_turned_body(tmp_path, angle, ranks):
     """The body stays as it is; as much water goes as it has volume."""
-    text = deck("region s still body", region=PLATE.format(angle=angle)).replace("create_atoms 2 region near\n", "").replace(
+    text = deck("region s still body", region=PLATE.format(angle=angle)).replace(
+        "create_atoms 2 region near\n", "").replace(
         "fsi/pack body", "fsi/pack NULL")
     done = lammps(tmp_path, text, ranks)
     kind, _, x = state(tmp_path)
@@ -167,7 +176,8 @@ def test_water_around_a_turned_body(tmp_path, angle, ranks):
 
 
 def test_alone(tmp_path):
-    """Without fluid the body's own lattice completes the sums, and goes: no particle is left outside."""
+    """Without fluid the body's own lattice completes the sums, and goes: no particle is left
+    outside."""
     done = lammps(tmp_path, deck("region s", region=DISC, fluid="NULL"))
     kind, mass, x = state(tmp_path)
     assert set(kind) == {2} and np.hypot(x[:, 0], x[:, 1]).max() < R - 0.499 * DX
@@ -178,33 +188,42 @@ def test_alone(tmp_path):
 @pytest.mark.parametrize("low", [-0.075, -0.15])
 @pytest.mark.parametrize("of, ends", [("s", True), ("s", False), ("both", True)])
 def test_half_before_a_plane(tmp_path, low, of, ends):
-    """Of a body that a mirror wall halves, what is before it is packed, wherever the box ends. What is behind is left of its lattice; the body
-    may end at the wall, and so may the region."""
-    text = deck(f"region {of}", region=f"{DISC}\nregion front block INF INF 0 INF INF INF units box\nregion both intersect 2 s front")
-    text = text.replace("boundary p p p", "boundary p f p").replace("block -0.15 0.15 -0.15", f"block -0.15 0.15 {low}")
-    text = text.replace("create_atoms 1 box", "region channel block INF INF 0 0.15 INF INF units box\ncreate_atoms 1 region channel")
-    text = text.replace("-0.145 0.145 INF INF units", f"{0 if ends else -0.075} 0.145 INF INF units")
-    done = lammps(tmp_path, text.replace("fix 2 body", "fix 3 water fsi/wall/mirror ylo 0 yhi 0.15\nfix 2 body"))
+    """Of a body that a mirror wall halves, what is before it is packed, wherever the box ends. What
+    is behind is left of its lattice; the body may end at the wall, and so may the region."""
+    text = deck(f"region {of}", region=f"{DISC}\nregion front block INF INF 0 INF INF INF units "
+                "box\nregion both intersect 2 s front")
+    text = text.replace("boundary p p p", "boundary p f p").replace("block -0.15 0.15 -0.15",
+                                                                    f"block -0.15 0.15 {low}")
+    text = text.replace("create_atoms 1 box", "region channel block INF INF 0 0.15 INF INF units "
+                        "box\ncreate_atoms 1 region channel")
+    text = text.replace("-0.145 0.145 INF INF units",
+                        f"{0 if ends else -0.075} 0.145 INF INF units")
+    done = lammps(tmp_path, text.replace("fix 2 body",
+                                         "fix 3 water fsi/wall/mirror ylo 0 yhi 0.15\nfix 2 body"))
     kind, mass, x = state(tmp_path)
     before = x[:, 1] > 0
     body = kind == 2
     assert mass[body & before].sum() == pytest.approx(750 * math.pi * R**2, rel=5e-4)
-    assert (body & before).sum() == round(math.pi * R**2 / 2 / DX**2) and x[before, 1].min() > 0.2 * DX
+    assert (body & before).sum() == round(math.pi * R**2 / 2 / DX**2) and x[before,
+                                                                            1].min() > 0.2 * DX
     assert residue(done.output)[0] < 0.05
     side = (np.arange(-10, 10) + 0.5) * DX
     assert (body & ~before).sum() == (0 if ends else (np.hypot(side, side[:10, None]) < R).sum())
-    assert (body | before).all() and np.hypot(x[~before, 0], x[~before, 1]).max(initial=0) < R + 0.25 * DX
+    assert (body | before).all() and np.hypot(x[~before, 0],
+                                              x[~before, 1]).max(initial=0) < R + 0.25 * DX
 
 
 def test_volume_of_several_regions(tmp_path):
     """A disc with a strip: LAMMPS has no distance from the two corners between them."""
     width = 0.03
-    text = deck("region both", region=f"{DISC}\nregion strip block -0.1 0 {-width / 2} {width / 2} INF INF units box\nregion both union 2 s strip")
+    text = deck("region both", region=f"{DISC}\nregion strip block -0.1 0 {-width / 2} {width / 2} "
+                "INF INF units box\nregion both union 2 s strip")
     lammps(tmp_path, text)
     kind, mass, _ = state(tmp_path)
     half = math.asin(width / 2 / R)
     inside = R**2 * half + width / 2 * R * math.cos(half)   # of the strip in the disc
-    assert mass[kind == 2].sum() == pytest.approx(1500 * (math.pi * R**2 + 0.1 * width - inside), rel=1e-3)
+    assert mass[kind == 2].sum() == pytest.approx(1500 * (math.pi * R**2 + 0.1 * width - inside),
+                                                  rel=1e-3)
 
 
 UNION = """region a cylinder z -0.07 0 0.04 INF INF units box
@@ -220,7 +239,8 @@ def test_union(tmp_path, side):
         text = text.replace("fsi/pack body water", "fsi/pack water body")
     done = lammps(tmp_path, text)
     kind, _, x = state(tmp_path)
-    off = np.minimum(np.hypot(x[:, 0] + 0.07, x[:, 1]) - 0.04, np.hypot(x[:, 0] - 0.06, x[:, 1]) - 0.05)
+    off = np.minimum(np.hypot(x[:, 0] + 0.07, x[:, 1]) - 0.04, np.hypot(x[:, 0] - 0.06, x[:, 1])
+                     - 0.05)
     body = kind == 2
     assert body.sum() == pytest.approx(math.pi * (0.04**2 + 0.05**2) / DX**2, abs=1)
     assert off[body].max() < -0.499 * DX and off[~body].min() > 0.499 * DX
@@ -230,12 +250,16 @@ def test_union(tmp_path, side):
 @pytest.mark.parametrize("angle", [10, 26.565, 45])
 @pytest.mark.parametrize("box", ["-0.15 0.15 -0.15 0.15", "-0.15 0.155 -0.18 0.15"])
 def test_volume_of_a_turned_block(tmp_path, angle, box):
-    """Cells are cut by their plane: at 45 degrees, where rows of them lie along a face, half a cell would be missing otherwise (0.5 %). Also
-    where no whole number of spacings goes into the box, so that cells are no squares."""
-    region = f"variable turned equal {angle}*PI/180\nregion s block -0.08 0.08 -0.02 0.02 INF INF units box rotate v_turned 0 0 0 0 0 1"
-    text = deck("region s", region=region, fluid="NULL", steps="steps 0").replace("region box block -0.15 0.15 -0.15 0.15", f"region box block {box}")
+    """Cells are cut by their plane: at 45 degrees, where rows of them lie along a face, half a cell
+    would be missing otherwise (0.5 %). Also where no whole number of spacings goes into the box, so
+    that cells are no squares."""
+    region = (f"variable turned equal {angle}*PI/180\nregion s block -0.08 0.08 -0.02 0.02 INF INF "
+              "units box rotate v_turned 0 0 0 0 0 1")
+    text = deck("region s", region=region, fluid="NULL", steps="steps 0").replace(
+        "region box block -0.15 0.15 -0.15 0.15", f"region box block {box}")
     lammps(tmp_path, text)
-    assert state(tmp_path)[1].sum() == pytest.approx(1500 * 0.16 * 0.04, rel=1e-3)   # at the four corners two planes cut a cell
+    # at the four corners two planes cut a cell
+    assert state(tmp_path)[1].sum() == pytest.approx(1500 * 0.16 * 0.04, rel=1e-3)
 
 
 def outline(points):
@@ -245,7 +269,8 @@ def outline(points):
 def test_outline_with_a_cavity(tmp_path):
     """A ring: its inner outline is given the same way round as the outer one."""
     circle = [(math.cos(a), math.sin(a)) for a in np.linspace(0, 2 * math.pi, 200, endpoint=False)]
-    text = outline([(0.09 * x, 0.09 * y) for x, y in circle]) + "\n" + outline([(0.04 * x, 0.04 * y) for x, y in circle])
+    text = outline([(0.09 * x, 0.09 * y) for x, y in circle]) + "\n" + outline(
+        [(0.04 * x, 0.04 * y) for x, y in circle])
     lammps(tmp_path, deck("outline ring.csv"), ring_csv=text)
     kind, mass, x = state(tmp_path)
     r = np.hypot(x[:, 0], x[:, 1])
@@ -256,7 +281,8 @@ def test_outline_with_a_cavity(tmp_path):
 
 
 CORNERS = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6),
+         (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
 
 
 def stl(faces, size=0.07):
@@ -279,33 +305,40 @@ def test_stl(tmp_path):
 
 
 def turned_angle():
-    """An L of triangles, 11 by 11 by 8 spacings, its legs 5 wide, in no direction of the lattice: (STL, corners' own axes)"""
+    """An L of triangles, 11 by 11 by 8 spacings, its legs 5 wide, in no direction of the lattice:
+    (STL, corners' own axes)"""
     plan = np.array([(0, 0), (11, 0), (11, 5), (5, 5), (5, 11), (0, 11)]) - 4.5
     c, s, d, t = (f(a) for a in np.radians((20, 15)) for f in (np.cos, np.sin))
-    axes = np.array([(1, 0, 0), (0, d, -t), (0, t, d)]) @ np.array([(c, -s, 0), (s, c, 0), (0, 0, 1)])
+    axes = np.array([(1, 0, 0), (0, d, -t), (0, t, d)]) @ np.array(
+        [(c, -s, 0), (s, c, 0), (0, 0, 1)])
     corners = DX * np.array([(x, y, z) for z in (-4, 4) for x, y in plan]) @ axes.T
     ends = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)]
     faces = [f[::-1] for f in ends] + [tuple(k + 6 for k in f) for f in ends]
     for a in range(6):
         b = (a + 1) % 6
         faces += [(a, b, b + 6), (a, b + 6, a + 6)]
-    lines = ["facet normal 0 0 0\nouter loop\n" + "".join("vertex %.12g %.12g %.12g\n" % tuple(corners[k]) for k in f) + "endloop\nendfacet\n" for f in faces]
+    lines = ["facet normal 0 0 0\nouter loop\n"
+             + "".join("vertex %.12g %.12g %.12g\n" % tuple(corners[k]) for k in f)
+             + "endloop\nendfacet\n" for f in faces]
     return "solid angle\n" + "".join(lines) + "endsolid\n", axes
 
 
 @pytest.mark.slow
 def test_turned_stl(tmp_path):
-    """Edges in no direction of the lattice, one of them reentrant: sums of a tenth of those of a lattice that is cut, and each on its side."""
+    """Edges in no direction of the lattice, one of them reentrant: sums of a tenth of those of a
+    lattice that is cut, and each on its side."""
     text, axes = turned_angle()
     done = lammps(tmp_path, deck("stl angle.stl steps 200", dim=3), angle_stl=text)
     kind, mass, x = state(tmp_path)
     own = x @ axes / DX
-    legs = [abs(own - middle) - half for middle, half in (((1, -2, 0), (5.5, 2.5, 4)), ((-2, 1, 0), (2.5, 5.5, 4)))]
+    legs = [abs(own - middle) - half
+            for middle, half in (((1, -2, 0), (5.5, 2.5, 4)), ((-2, 1, 0), (2.5, 5.5, 4)))]
     outside = np.min([np.linalg.norm(np.maximum(leg, 0), axis=1) for leg in legs], axis=0)
     hull = (abs(own - (1, 1, 0)) - (5.5, 5.5, 4)).max(1)
     body = kind == 2
     assert mass[body].sum() == pytest.approx(1500 * 85 * 8 * DX**3, rel=1e-9) and body.sum() == 680
-    assert hull[body].max() < -0.499 and own[body, :2].min(1).max() < 0.5 - 0.499 and outside[~body].min() > 0.499
+    assert hull[body].max() < -0.499 and own[body, :2].min(
+        1).max() < 0.5 - 0.499 and outside[~body].min() > 0.499
     largest, rms = residue(done.output)
     assert largest < 0.05 and rms < 0.005
 
@@ -318,7 +351,9 @@ def test_turned_stl(tmp_path):
     ("steps 10", {}, "takes one of region, stl and outline"),
 ])
 def test_refused(tmp_path, words, files, message):
-    done = lammps(tmp_path, deck(words, dim=3 if "stl" in words else 2, dx=0.02 if "stl" in words else DX), **files)
+    done = lammps(tmp_path,
+                  deck(words, dim=3 if "stl" in words else 2, dx=0.02 if "stl" in words else DX),
+                  **files)
     assert done.status != 0 and message in done.errors[0]
 
 
@@ -329,7 +364,8 @@ def test_outline_that_crosses_itself(tmp_path):
 
 
 def test_body_without_lattice(tmp_path):
-    text = deck("region s", region=DISC).replace("region near block -0.145 0.145", "region near block -0.03 0.03")
+    text = deck("region s", region=DISC).replace("region near block -0.145 0.145",
+                                                 "region near block -0.03 0.03")
     done = lammps(tmp_path, text)
     assert done.status != 0 and "expected one that goes on beyond the surface" in done.errors[0]
 
@@ -338,8 +374,10 @@ def test_body_without_lattice(tmp_path):
 def test_body_with_bonds(tmp_path, before, refused):
     """An elastic body is packed before it is bonded, or it would begin with strain."""
     text = deck("region s", region=DISC, fluid="NULL")
-    text = re.sub(r"fsi/material body wall.*\n(.*\n)+?fix 1 ", "fsi/material body solid rho 1500 young 1e6 poisson 0.3\npair_style fsi/solid/tl\n"
-                  "pair_coeff * * NULL body body\nset group body mol 1\nfix 1 ", text).replace("fix 1 water", "fix 1 body")
+    text = re.sub(r"fsi/material body wall.*\n(.*\n)+?fix 1 ", "fsi/material body solid rho 1500 "
+                  "young 1e6 poisson 0.3\npair_style fsi/solid/tl\n"
+                  "pair_coeff * * NULL body body\nset group body mol 1\nfix 1 ",
+                  text).replace("fix 1 water", "fix 1 body")
     text = text.replace("fix 2 body fsi/wall/particle", "").replace("fsi/pack", before + "fsi/pack")
     done = lammps(tmp_path, text)
     assert (done.status != 0) == refused, done.output[-1000:]

@@ -15,16 +15,21 @@ FINER = {2: 2**-0.5, 3: 2**(-1 / 3)}
 SPLITS, MERGES, LOST, GAINED, SPIN, WAITING = 0, 1, 2, 3, slice(4, 7), 7
 
 
-def box_scene(x, v=0.0, type=1, *, levels=2, refine="region zone", every=10, size=None, commands=(), before=(), zone="block 0.3 0.9 0.3 0.9 INF INF", fluid="", boundary="p p p", group="all", **options):
+def box_scene(x, v=0.0, type=1, *, levels=2, refine="region zone", every=10, size=None, commands=(),
+              before=(), zone="block 0.3 0.9 0.3 0.9 INF INF", fluid="", boundary="p p p",
+              group="all", **options):
     """Fluid of levels 1, 2, ... in a box, periodic by default, with a zone."""
     dim = options.pop("dim", 2)
     size = size or [1.2] * dim + [0] * (3 - dim)
     low = [-options.pop("room", 0.0), 0, 0]
     spacing = " ".join(f"spacing {k + 1} {DX * FINER[dim]**k!r}" for k in range(1, levels))
     types = " ".join(str(k + 1) for k in range(levels))
-    return Scene(x, np.zeros_like(x) + v, dim=dim, dx=DX, type=type, box=(low, size), boundary=boundary, materials=(WATER,) * levels, density=spacing,
+    return Scene(x, np.zeros_like(x) + v, dim=dim, dx=DX, type=type, box=(low, size),
+                 boundary=boundary, materials=(WATER,) * levels, density=spacing,
                  fluid=f"sound 15 tension yes {fluid}", dt=options.pop("dt", 1e-3),
-                 commands=(*before, f"region zone {zone} units box", *commands, f"fix ref {group} fsi/refine {every} types {types} {refine}", "compute e all fsi/energy"), **options)
+                 commands=(*before, f"region zone {zone} units box", *commands,
+                           f"fix ref {group} fsi/refine {every} types {types} {refine}",
+                           "compute e all fsi/energy"), **options)
 
 
 def go(scene, steps):
@@ -68,14 +73,17 @@ def nearest(x, y, size):
 
 
 def test_gravity_in_an_empty_level():
-    """Density diffusion knows as hydrostatic what gravity acts on, all the particles of a level: those that have come into it, empty at
-    first or not. Bit for bit the same: gravity of nobody in the water and none; gravity of its types and of all."""
+    """Density diffusion knows as hydrostatic what gravity acts on, all the particles of a level:
+    those that have come into it, empty at first or not. Bit for bit the same: gravity of nobody in
+    the water and none; gravity of its types and of all."""
     x = lattice((24, 24), DX)
     found = {}
     for group in ("none", "other", "water", "all"):
-        gravity = [] if group == "none" else ["group water type 1 2", "group other empty", f"fix g {group} gravity 9.81 vector 0 -1 0"]
+        gravity = [] if group == "none" else ["group water type 1 2", "group other empty",
+                                              f"fix g {group} gravity 9.81 vector 0 -1 0"]
         for first in (False, True):
-            with box_scene(x, zone="block 0.3 0.9 0.3 0.9 INF INF", fluid="density/diffusion 0.1", commands=gravity) as s:
+            with box_scene(x, zone="block 0.3 0.9 0.3 0.9 INF INF", fluid="density/diffusion 0.1",
+                           commands=gravity) as s:
                 if first:  # and a second one, which begins with a level that is there
                     s.run()
                 go(s, 20)
@@ -83,27 +91,33 @@ def test_gravity_in_an_empty_level():
     for group, same in (("other", "none"), ("water", "all")):
         for first in (False, True):
             assert np.array_equal(found[group, first], found[same, True])
-    assert len(found["none", True]) > len(x) and np.abs(found["all", True] - found["none", True])[:, 3].max() > 1e-3
+    assert len(found["none", True]) > len(x) and np.abs(found["all", True]
+                                                        - found["none", True])[:, 3].max() > 1e-3
 
 
-@pytest.mark.parametrize("n, origin, apart", [((24, 24), 0.0, 2**-0.5), ((8, 8, 8), 0.0, 3**0.5 / 2)], ids=["2D", "3D"])
+@pytest.mark.parametrize("n, origin, apart",
+                         [((24, 24), 0.0, 2**-0.5), ((8, 8, 8), 0.0, 3**0.5 / 2)], ids=["2D", "3D"])
 def test_a_lattice_splits(n, origin, apart):
-    """Before the first step: a square lattice becomes a square one, a cubic one a body-centered one, whose particles are that far from each other.
-    Masses are halves to the bit; linear fields of velocity and density stay what they are where the halves come to be."""
+    """Before the first step: a square lattice becomes a square one, a cubic one a body-centered
+    one, whose particles are that far from each other. Masses are halves to the bit; linear fields
+    of velocity and density stay what they are where the halves come to be."""
     dim = len(n)
     x = lattice(n, DX, origin)
     size = [k * DX for k in n] + [0] * (3 - dim)
     slope = np.zeros((3, 3))
     slope[:dim, :dim] = np.random.default_rng(1).uniform(-1, 1, (dim, dim))
     zone = "block 0.11 0.29 0.11 0.29 0.11 0.29" if dim == 3 else "block 0.3 0.9 0.3 0.9 INF INF"
-    inside = np.all((x[:, :dim] > (0.11 if dim == 3 else 0.3)) & (x[:, :dim] < (0.29 if dim == 3 else 0.9)), axis=1)
-    with box_scene(x, x @ slope.T, dim=dim, size=size, zone=zone, refine="region zone settle 0") as s:
+    inside = np.all((x[:, :dim] > (0.11 if dim == 3 else 0.3))
+                    & (x[:, :dim] < (0.29 if dim == 3 else 0.9)), axis=1)
+    with box_scene(x, x @ slope.T, dim=dim, size=size, zone=zone,
+                   refine="region zone settle 0") as s:
         s.put("rho", 1000 + x @ (1, -2, 1.5))
         go(s, 0)
         m = s.get("rmass").max()
         assert s.n == len(x) + inside.sum() and outputs(s)[SPLITS] == inside.sum()
         fine = s.get("type") == 2
-        assert fine.sum() == 2 * inside.sum() and set(s.get("rmass")[fine]) == {m / 2} and set(s.get("rmass")[~fine]) == {m}
+        assert fine.sum() == 2 * inside.sum() and set(s.get("rmass")[fine]) == {m / 2} and set(
+            s.get("rmass")[~fine]) == {m}
         y = s.get("x")
         # fluid away from the edge of the zone, where halves are next to whole ones
         assert nearest(y[fine], y[fine], size) == pytest.approx(apart * DX, rel=1e-9)
@@ -119,23 +133,27 @@ def shaken(n=(34, 34), seed=5, vmax=1.0, dim=2):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_pairs_merge(dim):
-    """Far from the zone nine of ten find a partner at once. Each pair becomes one at its center of mass with its momentum; energy and spin that are
-    lost are what the sums say; the balance of energy has all of it."""
+    """Far from the zone nine of ten find a partner at once. Each pair becomes one at its center of
+    mass with its momentum; energy and spin that are lost are what the sums say; the balance of
+    energy has all of it."""
     n = (34, 34) if dim == 2 else (12, 12, 12)
     x, v = shaken(n, dim=dim)
     size = [1.3] * dim + [0] * (3 - dim)
-    with box_scene(x, v, 2, dim=dim, size=size, boundary="f f p" if dim == 2 else "f f f", zone="block 5 6 5 6 5 6", every=1, dt=1e-9, refine="region zone settle 0",
+    with box_scene(x, v, 2, dim=dim, size=size, boundary="f f p" if dim == 2 else "f f f",
+                   zone="block 5 6 5 6 5 6", every=1, dt=1e-9, refine="region zone settle 0",
                    commands=("fix g all gravity 9.81 vector 0.6 -0.8 0",)) as s:
         s.put("rho", 1000 * (1 + 0.01 * np.random.default_rng(2).uniform(-1, 1, len(x))))
         go(s, 0)
-        old, mass, momentum, balance = {name: s.get(name) for name in ("id", "x", "v", "rmass", "rho")}, exact_mass(s), s.momentum(), s.ledger()
+        old, mass, momentum, balance = {name: s.get(name) for name in (
+            "id", "x", "v", "rmass", "rho")}, exact_mass(s), s.momentum(), s.ledger()
         kinetic, spin = energies(s)
         go(s, 1)
         out, merged = outputs(s), s.get("type") == 1
         assert merged.sum() == out[MERGES] and s.n == len(x) - out[MERGES] and out[SPLITS] == 0
         assert out[MERGES] > 0.43 * len(x) and out[WAITING] == len(x) - 2 * out[MERGES]
         weight = mass * 9.81e-9 * np.array([0.6, -0.8, 0])
-        assert exact_mass(s) == mass and np.abs(s.momentum() - momentum - weight).max() < 1e-13 * (old["rmass"][:, None] * np.abs(old["v"])).sum()
+        assert exact_mass(s) == mass and np.abs(s.momentum() - momentum - weight).max() < 1e-13 * (
+            old["rmass"][:, None] * np.abs(old["v"])).sum()
         row = {i: k for k, i in enumerate(old["id"])}
         gone = np.array([row[i] for i in sorted(set(old["id"]) - set(s.get("id")))])
         for i, y, rho in zip(s.get("id")[merged], s.get("x")[merged], s.get("rho")[merged]):
@@ -143,18 +161,21 @@ def test_pairs_merge(dim):
             b = gone[np.abs(0.5 * (old["x"][a] + old["x"][gone]) - y).max(1).argmin()]
             assert np.abs(0.5 * (old["x"][a] + old["x"][b]) - y).max() < 1e-8 and i < old["id"][b]
             assert np.linalg.norm(old["x"][a] - old["x"][b]) < 1.7 * DX * FINER[dim]
-            assert rho == pytest.approx(2 / (1 / old["rho"][a] + 1 / old["rho"][b]), rel=1e-6)    # forces have worked for 1e-9 s
+            # forces have worked for 1e-9 s
+            assert rho == pytest.approx(2 / (1 / old["rho"][a] + 1 / old["rho"][b]), rel=1e-6)
         after, spin_after = energies(s)
         assert out[LOST] == pytest.approx(kinetic - after, rel=1e-5) and out[GAINED] == 0
         assert out[SPIN] == pytest.approx(spin - spin_after, abs=1e-5 * np.abs(spin).max())
         now = s.ledger()
         assert now.sum() == pytest.approx(balance.sum(), abs=1e-6 * out[LOST])
-        assert now[13] == pytest.approx(out[LOST], rel=0.1) and now[13] != out[LOST]    # compression, too, which is not linear in the density
+        # compression, too, which is not linear in the density
+        assert now[13] == pytest.approx(out[LOST], rel=0.1) and now[13] != out[LOST]
         assert not now[4:13].any()
 
 
 def test_pairs_are_mutual_and_nearest_first():
-    """Four in a row, at distances of 0.9, 0.7 and 1.0 of a spacing: the middle two merge, and the outer ones, too far from each other, wait."""
+    """Four in a row, at distances of 0.9, 0.7 and 1.0 of a spacing: the middle two merge, and the
+    outer ones, too far from each other, wait."""
     at = 0.5 + DX * FINER[2] * np.cumsum([0, 0.9, 0.7, 1.0])
     x = np.array([[a, 0.5, 0] for a in at])
     with box_scene(x, 0.0, 2, zone="block 5 6 5 6 INF INF", every=1, dt=1e-9) as s:
@@ -169,31 +190,36 @@ def test_pairs_are_mutual_and_nearest_first():
 
 @pytest.mark.slow
 def test_still_fluid_moves_through_the_zone():
-    """Under a background pressure, five times through: mass to the bit, momentum to round-off, and particles that settle at once keep most of
-    the mean pressure's fall away: 0.0025 of the density, without settling 0.0089, which is all of the pressure."""
+    """Under a background pressure, five times through: mass to the bit, momentum to round-off, and
+    particles that settle at once keep most of the mean pressure's fall away: 0.0025 of the density,
+    without settling 0.0089, which is all of the pressure."""
     x = lattice((24, 12), DX)
     lost = {}
     for settle in (0, 30):
-        with box_scene(x, (5.0, 0, 0), size=[1.2, 0.6, 0], zone="block 0.3 0.9 INF INF INF INF", refine=f"region zone settle {settle}",
+        with box_scene(x, (5.0, 0, 0), size=[1.2, 0.6, 0], zone="block 0.3 0.9 INF INF INF INF",
+                       refine=f"region zone settle {settle}",
                        fluid="density/diffusion 0.1 background 2000", dt=6.6e-4) as s:
             go(s, 0)
             mass, momentum = exact_mass(s), s.momentum()
             go(s, 1800)
             m, rho = s.get("rmass"), s.get("rho")
             lost[settle] = 1 - m.sum() / (m / rho).sum() / 1000
-            assert exact_mass(s) == mass and np.abs(s.momentum() - momentum).max() < 1e-13 * momentum[0]
+            assert exact_mass(s) == mass and np.abs(s.momentum()
+                                                    - momentum).max() < 1e-13 * momentum[0]
             assert outputs(s)[SPLITS] > 1000 and outputs(s)[MERGES] > 1000
     print(lost)
     assert lost[30] < 0.003 < lost[0]
 
 
 def test_arrays_grow():
-    """LAMMPS makes room for 16,384 particles at a time: one that splits when the arrays are full moves with them. What is read of the old arrays then
-    is a crash, where these have pages of their own."""
+    """LAMMPS makes room for 16,384 particles at a time: one that splits when the arrays are full
+    moves with them. What is read of the old arrays then is a crash, where these have pages of their
+    own."""
     if hasattr(ctypes.CDLL(None), "mallopt"):
         ctypes.CDLL(None).mallopt(-3, 65536)    # glibc: M_MMAP_THRESHOLD
     x = lattice((127, 129), DX)
-    with box_scene(x, size=[127 * DX, 129 * DX, 0], boundary="f f p", zone="block 3 4 3 4 INF INF", refine="region zone settle 0") as s:
+    with box_scene(x, size=[127 * DX, 129 * DX, 0], boundary="f f p", zone="block 3 4 3 4 INF INF",
+                   refine="region zone settle 0") as s:
         room = s.lmp.extract_setting("nmax")
         go(s, 0)
         assert room == 16384 and s.n == len(x) + outputs(s)[SPLITS] > room
@@ -236,16 +262,20 @@ def test_settling():
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_settling_at_mirror_walls(dim):
-    """In the corner of two mirror walls halves settle, too, with the images of all: |sum V grad W| there, which is what pressure does, falls to less than a
-    third of what it is without settling."""
+    """In the corner of two mirror walls halves settle, too, with the images of all: |sum V grad W|
+    there, which is what pressure does, falls to less than a third of what it is without
+    settling."""
     n = [24, 24] if dim == 2 else [10, 10, 10]
     size = n[0] * DX
     x, _ = cloud(n, DX, jitter=0.05)
-    walls = "fix walls all fsi/wall/mirror " + " ".join(f"{a}lo 0 {a}hi {size!r}" for a in "xyz"[:dim])
+    walls = "fix walls all fsi/wall/mirror " + " ".join(f"{a}lo 0 {a}hi {size!r}"
+                                                        for a in "xyz"[:dim])
     rest = {}
     for settle in (0, 30):
-        with box_scene(x, dim=dim, size=[size] * dim + [0] * (3 - dim), boundary="f f p" if dim == 2 else "f f f", room=0.2, commands=(walls,),
-                       zone="block " + " ".join(["INF", repr(0.5 * size)] * dim) + " INF INF" * (3 - dim), refine=f"region zone settle {settle}") as s:
+        with box_scene(x, dim=dim, size=[size] * dim + [0] * (3 - dim), boundary="f f p" if dim == 2
+                       else "f f f", room=0.2, commands=(walls,),
+                       zone="block " + " ".join(["INF", repr(0.5 * size)] * dim) + " INF INF"
+                       * (3 - dim), refine=f"region zone settle {settle}") as s:
             go(s, 0)
             y, V, fine = s.get("x"), s.get("rmass") / s.get("rho"), s.get("type") == 2
             h = 1.5 * DX * np.where(fine, FINER[dim], 1.0)
@@ -269,7 +299,8 @@ def test_held_fluid_does_not_settle():
     x, _ = cloud((24, 24), DX, jitter=0.1)
     held, found = x[:, 1] < 0.3, {}
     for settle in (0, 30):
-        with box_scene(x, held=held, zone="block 0.3 0.9 0.31 0.9 INF INF", refine=f"region zone settle {settle}") as s:
+        with box_scene(x, held=held, zone="block 0.3 0.9 0.31 0.9 INF INF",
+                       refine=f"region zone settle {settle}") as s:
             go(s, 0)
             found[settle] = s.get("x")
     moved = np.linalg.norm(found[30] - found[0], axis=1)
@@ -277,11 +308,14 @@ def test_held_fluid_does_not_settle():
 
 
 def test_no_pair_merges_through_a_segment():
-    """Two segments of mirror walls back to back, a baffle, with fine fluid on both sides: nobody comes to lie in it, but beyond its ends some do in its plane."""
+    """Two segments of mirror walls back to back, a baffle, with fine fluid on both sides: nobody
+    comes to lie in it, but beyond its ends some do in its plane."""
     fine, n = DX * FINER[2], 34
     size, middle, ends = n * fine, 17 * fine, f"range y {8 * fine!r} {26 * fine!r}"
-    with box_scene(lattice((n, n), fine), 0.0, 2, size=[size, size, 0], boundary="f f p", zone="block 5 6 5 6 INF INF", every=1, dt=1e-9,
-                   commands=(f"fix baffle all fsi/wall/mirror xlo {middle!r} {ends} xhi {middle!r} {ends}",)) as s:
+    with box_scene(lattice((n, n), fine), 0.0, 2, size=[size, size, 0], boundary="f f p",
+                   zone="block 5 6 5 6 INF INF", every=1, dt=1e-9,
+                   commands=(f"fix baffle all fsi/wall/mirror xlo {middle!r} {ends} xhi {middle!r} "
+                             f"{ends}",)) as s:
         go(s, 1)
         y = s.get("x")
         assert outputs(s)[MERGES] > 400
@@ -291,10 +325,13 @@ def test_no_pair_merges_through_a_segment():
 
 
 def test_nobody_stays_fine_behind_the_zone():
-    """Who finds no partner where fluid leaves the zone, one in ten, comes first next time, while there are others: ten spacings behind it all have
-    merged (without that 3 % of the particles there are still fine)."""
+    """Who finds no partner where fluid leaves the zone, one in ten, comes first next time, while
+    there are others: ten spacings behind it all have merged (without that 3 % of the particles
+    there are still fine)."""
     x = lattice((48, 8), DX)
-    with box_scene(x, (5.0, 0, 0), size=[2.4, 0.4, 0], every=5, zone="block 0.3 0.9 INF INF INF INF", fluid="density/diffusion 0.1 background 2000", dt=6.6e-4) as s:
+    with box_scene(x, (5.0, 0, 0), size=[2.4, 0.4, 0], every=5,
+                   zone="block 0.3 0.9 INF INF INF INF",
+                   fluid="density/diffusion 0.1 background 2000", dt=6.6e-4) as s:
         go(s, 600)
         behind, fine = s.get("x")[:, 0] > 1.4, s.get("type") == 2
         print(behind.sum(), fine[behind].sum(), outputs(s)[WAITING])
@@ -302,21 +339,24 @@ def test_nobody_stays_fine_behind_the_zone():
 
 
 def test_margin():
-    """A particle within a coarse spacing of its zone stays fine, and who is three of them away takes a partner that is further."""
+    """A particle within a coarse spacing of its zone stays fine, and who is three of them away
+    takes a partner that is further."""
     x = lattice((34, 34), DX * FINER[2])
     with box_scene(x, 0.0, 2, size=[34 * DX * FINER[2]] * 2 + [0], every=1, dt=1e-9) as s:
         go(s, 1)
         y, fine = s.get("x")[:, :2], s.get("type") == 2
         outside = np.linalg.norm(np.maximum(np.maximum(0.3 - y, y - 0.9), 0), axis=1)
         assert fine[outside < 0.9 * DX].all() and fine[outside > 1.5 * DX].mean() < 0.2
-        assert outputs(s)[MERGES] > 250 and exact_mass(s) == pytest.approx(1000 * (34 * DX * FINER[2])**2, rel=1e-2)
+        assert outputs(s)[MERGES] > 250 and exact_mass(s) == pytest.approx(
+            1000 * (34 * DX * FINER[2])**2, rel=1e-2)
 
 
 def test_zone_that_moves():
-    """Fluid at rest: where the zone comes particles split, where it was they merge again. A split and a merge bring nobody back to where he was,
-    but mass is the same to the bit."""
+    """Fluid at rest: where the zone comes particles split, where it was they merge again. A split
+    and a merge bring nobody back to where he was, but mass is the same to the bit."""
     x = lattice((24, 24), DX)
-    with box_scene(x, zone="block 0.1 0.4 0.3 0.9 INF INF move v_go NULL NULL", every=5, dt=1e-9, before=("variable go equal 0.005*step",)) as s:
+    with box_scene(x, zone="block 0.1 0.4 0.3 0.9 INF INF move v_go NULL NULL", every=5, dt=1e-9,
+                   before=("variable go equal 0.005*step",)) as s:
         go(s, 0)
         mass = exact_mass(s)
         first = (s.get("type") == 2).sum()
@@ -331,47 +371,67 @@ def test_zone_that_moves():
 
 
 def test_zone_that_goes_with_the_water():
-    """The zone is at the end of the step, water in its middle: a column that is a fiftieth of a spacing outside of it stays so."""
+    """The zone is at the end of the step, water in its middle: a column that is a fiftieth of a
+    spacing outside of it stays so."""
     x = lattice((24, 24), DX)
-    with box_scene(x, (3.0, 0, 0), zone=f"block {0.3 + 0.02 * DX!r} {0.9 + 0.48 * DX!r} 0.3 0.9 INF INF move v_go NULL NULL", every=1, refine="region zone settle 0",
+    with box_scene(x, (3.0, 0, 0), zone=f"block {0.3 + 0.02 * DX!r} {0.9 + 0.48 * DX!r} 0.3 0.9 "
+                   "INF INF move v_go NULL NULL", every=1, refine="region zone settle 0",
                    before=("variable go equal 3*1e-3*step",)) as s:
         first = outputs(go(s, 0))[SPLITS]
         assert first == 12 * 12 and outputs(go(s, 2))[SPLITS] == first
 
 
 def test_walls_that_move():
-    """A wall that comes half a spacing nearer in a step: halves are before it as it is then, not as it was for the last force."""
+    """A wall that comes half a spacing nearer in a step: halves are before it as it is then, not as
+    it was for the last force."""
     x = np.array([[0.8 * DX, 0.6 + k * DX, 0] for k in (0, 1, -1)])
-    with box_scene(x, size=[1.2, 1.2, 0], boundary="f f p", room=0.8, zone=f"sphere {0.8 * DX!r} 0.6 0 {0.2 * DX!r} move NULL v_go NULL", every=2, refine="region zone settle 0",
-                   before=("variable go equal 0.5*(step<2)",), commands=(f"fix w all fsi/wall/mirror xlo {-0.25 * DX!r} velocity {500 * DX!r} 0 0",)) as s:
+    with box_scene(x, size=[1.2, 1.2, 0], boundary="f f p", room=0.8,
+                   zone=f"sphere {0.8 * DX!r} 0.6 0 {0.2 * DX!r} move NULL v_go NULL", every=2,
+                   refine="region zone settle 0",
+                   before=("variable go equal 0.5*(step<2)",),
+                   commands=(f"fix w all fsi/wall/mirror xlo {-0.25 * DX!r} velocity {500 * DX!r} "
+                             "0 0",)) as s:
         go(s, 2)
-        assert s.n == 4 and s.get("x")[:, 0].min() > 0.5 * DX    # where the wall is in the middle of the second step
+        # where the wall is in the middle of the second step
+        assert s.n == 4 and s.get("x")[:, 0].min() > 0.5 * DX
 
 
 @pytest.mark.parametrize("settle", [0, 30])
 def test_balance_where_pairs_merge_across_the_edge(settle):
-    """Under gravity: a partner beyond the edge of the box, or on another rank, has its potential energy too."""
+    """Under gravity: a partner beyond the edge of the box, or on another rank, has its potential
+    energy too."""
     x = lattice((34, 34), DX * FINER[2])
-    with box_scene(x, 0.0, 2, size=[34 * DX * FINER[2]] * 2 + [0], every=5, boundary="p f p", dt=1e-4, zone="block INF INF 0.6 INF INF INF", refine=f"region zone settle {settle}",
-                   commands=("fix g all gravity 9.81 vector 0 -1 0", "fix w all fsi/wall/mirror ylo 0")) as s:
+    with box_scene(x, 0.0, 2, size=[34 * DX * FINER[2]] * 2 + [0], every=5,
+                   boundary="p f p", dt=1e-4, zone="block INF INF 0.6 INF INF INF",
+                   refine=f"region zone settle {settle}",
+                   commands=("fix g all gravity 9.81 vector 0 -1 0",
+                             "fix w all fsi/wall/mirror ylo 0")) as s:
         before = energy(go(s, 4))
         after = energy(go(s, 2))
         y = s.get("x")[:, 1]
         assert outputs(s)[MERGES] > 100
-        assert after == pytest.approx(before, rel=1e-6)    # a ghost's flags of its image are others': 512 heights of the box
+        # a ghost's flags of its image are others': 512 heights of the box
+        assert after == pytest.approx(before, rel=1e-6)
 
 
 @pytest.mark.parametrize("guard", ["auto", "0"])
 def test_energy_of_splitting_beside_a_wall(guard):
-    """Halves are not within the guard of a wall of particles, which would push them with energy out of nothing: 18 J of 13 J that this water exchanges."""
+    """Halves are not within the guard of a wall of particles, which would push them with energy out
+    of nothing: 18 J of 13 J that this water exchanges."""
     fine = 1.2 / 34
     water, bed = lattice((24, 16), DX), lattice((34, 4), fine, origin=np.array([0, -4 * fine]))
     x, type_ = np.concatenate([water, bed]), np.repeat([1, 3], [len(water), len(bed)])
-    with Scene(x, dx=DX, type=type_, held=type_ == 3, materials=(WATER, WATER, "wall rho 1000"), density=f"spacing 2 {DX * FINER[2]!r} spacing 3 {fine!r}",
-               box=((0, -0.2, 0), (1.2, 1.5, 0)), boundary="p f p", dt=5e-4, fluid="sound 30 density/diffusion 0.1 artificial/visc 0.02 0",
-               commands=(f"fix w held fsi/wall/particle guard {guard}", "fix g moving gravity 9.81 vector 0 -1 0", "fsi/set moving hydrostatic 0.8",
-                         "variable down equal -0.9*(step>50)", "region z block INF INF 0.9 1.3 INF INF units box move NULL v_down NULL",
-                         "fix ref moving fsi/refine 5 types 1 2 region z", "compute e all fsi/energy")) as s:
+    with Scene(x, dx=DX, type=type_, held=type_ == 3, materials=(WATER, WATER, "wall rho 1000"),
+               density=f"spacing 2 {DX * FINER[2]!r} spacing 3 {fine!r}",
+               box=((0, -0.2, 0), (1.2, 1.5, 0)), boundary="p f p", dt=5e-4,
+               fluid="sound 30 density/diffusion 0.1 artificial/visc 0.02 0",
+               commands=(f"fix w held fsi/wall/particle guard {guard}",
+                         "fix g moving gravity 9.81 vector 0 -1 0",
+                         "fsi/set moving hydrostatic 0.8",
+                         "variable down equal -0.9*(step>50)",
+                         "region z block INF INF 0.9 1.3 INF INF units box move NULL v_down NULL",
+                         "fix ref moving fsi/refine 5 types 1 2 region z",
+                         "compute e all fsi/energy")) as s:
         before = energy(go(s, 50))
         after = [energy(go(s, 20)) for _ in range(3)]
         assert outputs(s)[SPLITS] > 150
@@ -380,23 +440,27 @@ def test_energy_of_splitting_beside_a_wall(guard):
 
 
 def test_distance_from_a_body():
-    """Three levels around a particle beside the periodic edge of the box: by its distance, which knows images."""
+    """Three levels around a particle beside the periodic edge of the box: by its distance, which
+    knows images."""
     x = lattice((32, 32), DX)
     body = 17    # in the first column
-    with box_scene(x, levels=3, size=[1.6, 1.6, 0], refine="distance body 0.45 0.15", every=1, dt=1e-9, group="rest",
+    with box_scene(x, levels=3, size=[1.6, 1.6, 0], refine="distance body 0.45 0.15", every=1,
+                   dt=1e-9, group="rest",
                    commands=(f"group body id {body + 1}", "group rest subtract all body")) as s:
         go(s, 0)
         y, level = s.get("x"), s.get("type")
         place = s.get("x")[s.get("id") == body + 1][0]
         d = np.abs(y - place)
         away = np.linalg.norm(np.minimum(d, 1.6 - d)[:, :2], axis=1)
-        assert (level[(away > 0) & (away < 0.12)] == 3).all() and (level[(away > 0.18) & (away < 0.42)] == 2).all() and (level[away > 0.48] == 1).all()
+        assert (level[(away > 0) & (away < 0.12)] == 3).all() and (
+            level[(away > 0.18) & (away < 0.42)] == 2).all() and (level[away > 0.48] == 1).all()
         assert (y[level == 3, 0] > 1.5).any() and (y[level == 3, 0] < 0.1).any()
 
 
 def test_ids_stay_small_and_unique():
-    """Fluid that passes through the zone again and again: IDs of particles that merged are given again, unless a command has given them. IDs are
-    never 1 to N, which LAMMPS' dumps would take to be so for ever."""
+    """Fluid that passes through the zone again and again: IDs of particles that merged are given
+    again, unless a command has given them. IDs are never 1 to N, which LAMMPS' dumps would take to
+    be so for ever."""
     x = lattice((24, 24), DX)
     with box_scene(x, (5.0, 3.0, 0.0), every=10, fluid="density/diffusion 0.1") as s:
         most = 0
@@ -431,19 +495,23 @@ write_dump all custom left.dump id type mass modify sort id time yes format floa
 
 @pytest.mark.parametrize("command", ["reset_atoms id", "delete_atoms group nobody"])
 def test_renumbered_between_runs(tmp_path, command):
-    """IDs that particles left free may be those of others after a command: none stands twice, and no mass is lost."""
+    """IDs that particles left free may be those of others after a command: none stands twice, and
+    no mass is lost."""
     frame = run(tmp_path, RENUMBERED.format(command=command)).frames("left.dump")[-1]
     assert len(set(frame["id"])) == len(frame["id"]) > 1600
     assert math.fsum(frame["mass"]) == pytest.approx(1600 * frame["mass"].max(), rel=1e-14)
 
 
 def test_walls_and_edges():
-    """Halves stay before mirror walls and in the box, and not much nearer to a wall than the shaken lattice was."""
+    """Halves stay before mirror walls and in the box, and not much nearer to a wall than the shaken
+    lattice was."""
     x, v = cloud((24, 24), DX, jitter=0.3)
-    with box_scene(x, zone="block INF INF INF INF INF INF", boundary="f f p", commands=("fix walls all fsi/wall/mirror xlo 0 ylo 0 yhi 1.2",)) as s:
+    with box_scene(x, zone="block INF INF INF INF INF INF", boundary="f f p",
+                   commands=("fix walls all fsi/wall/mirror xlo 0 ylo 0 yhi 1.2",)) as s:
         go(s, 0)
         y = s.get("x")
-        assert s.n == 2 * len(x) and y[:, :2].min() > 0.07 * DX and y[:, 1].max() < 1.2 - 0.07 * DX and y[:, 0].max() < 1.2
+        assert (s.n == 2 * len(x) and y[:, :2].min() > 0.07 * DX and y[:, 1].max() < 1.2 - 0.07 * DX
+                and y[:, 0].max() < 1.2)
 
 
 PHYSICS = """pair_style fsi/fluid sound 30 tension yes density/diffusion 0.1 artificial/visc 0.02 0
@@ -475,8 +543,10 @@ def flow(dim):
 
 
 def layers(dim, begin="read_data flow.data", newton="on", grid="* * *", every=10):
-    one, two = ("0.3 1.7 0.2 1.4", "0.75 1.25 0.6 1.0") if dim == 2 else ("0.15 0.95 INF INF", "0.5 0.6 INF INF")
-    return start(f"newton {newton}", f"processors {grid}", begin, dim=dim, boundary="p p p") + PHYSICS.format(
+    one, two = ("0.3 1.7 0.2 1.4", "0.75 1.25 0.6 1.0") if dim == 2 else ("0.15 0.95 INF INF",
+                                                                          "0.5 0.6 INF INF")
+    return start(f"newton {newton}", f"processors {grid}", begin, dim=dim,
+                 boundary="p p p") + PHYSICS.format(
         every=every, one=one, two=two, fine=DX * FINER[dim], finest=DX * FINER[dim]**2)
 
 
@@ -487,11 +557,14 @@ def thermo(result, step):
 @pytest.mark.slow
 @pytest.mark.parametrize("dim, steps", [(2, 200), (3, 30)])
 def test_ranks(tmp_path, dim, steps):
-    """The same particles with the same IDs on any number of ranks, with newton off, too, to round-off."""
+    """The same particles with the same IDs on any number of ranks, with newton off, too, to
+    round-off."""
     runs = {}
-    for name, ranks, newton, grid in (("one", 1, "on", "* * *"), ("two", 2, "on", "2 1 1"), ("off", 4, "off", "2 2 1")):
+    for name, ranks, newton, grid in (("one", 1, "on", "* * *"), ("two", 2, "on", "2 1 1"),
+                                      ("off", 4, "off", "2 2 1")):
         text = layers(dim, newton=newton, grid=grid) + watch(every=steps) + f"run {steps}\n"
-        runs[name] = run(tmp_path / name, text, ranks, flow_data=flow(dim), water_fsi=MATERIALS).frames()
+        runs[name] = run(tmp_path / name, text, ranks, flow_data=flow(dim),
+                         water_fsi=MATERIALS).frames()
     first, last = runs["one"]
     assert set(last["type"]) == {1, 2, 3} and len(last["id"]) > len(first["id"]) > 1000
     assert last["id"].max() != len(last["id"])
@@ -503,10 +576,12 @@ def test_ranks(tmp_path, dim, steps):
 
 
 def test_corner_without_room():
-    """A particle nearer to both mirror walls of a corner than any of its halves would be to one waits until it has room: no half behind a wall."""
+    """A particle nearer to both mirror walls of a corner than any of its halves would be to one
+    waits until it has room: no half behind a wall."""
     x = lattice((24, 24), DX)
     x[0, :2] = 0.12 * DX
-    with box_scene(x, zone="block INF INF INF INF INF INF", boundary="f f p", room=0.2, commands=("fix walls all fsi/wall/mirror xlo 0 ylo 0",)) as s:
+    with box_scene(x, zone="block INF INF INF INF INF INF", boundary="f f p", room=0.2,
+                   commands=("fix walls all fsi/wall/mirror xlo 0 ylo 0",)) as s:
         go(s, 0)
         assert s.get("x")[:, :2].min() > 0 and s.n == 2 * len(x) - 1
         go(s, 30)
@@ -531,15 +606,21 @@ neighbor {neighbor}
 """
 
 
-@pytest.mark.parametrize("below, grid, neighbor, balance", [("wall", "1 2 1", "0.015 bin", "y 0.3"), ("water", "2 1 1", "0.002 multi\ncomm_modify mode multi", "x 0.85")], ids=["body", "event"])
+@pytest.mark.parametrize("below, grid, neighbor, balance",
+                         [("wall", "1 2 1", "0.015 bin", "y 0.3"),
+                          ("water", "2 1 1", "0.002 multi\ncomm_modify mode multi", "x 0.85")],
+                         ids=["body", "event"])
 def test_settling_looks_further_than_ghosts(tmp_path, below, grid, neighbor, balance):
-    """How far particles may move is a matter of bodies up to the support and a spacing away, and of events within it, also where neither is among the ghosts of a
-    rank. Its edge is 0.175 from the wall here, whose ghosts reach 0.165, or 0.132 from halves that ghosts of 0.13 do not reach."""
+    """How far particles may move is a matter of bodies up to the support and a spacing away, and of
+    events within it, also where neither is among the ghosts of a rank. Its edge is 0.175 from the
+    wall here, whose ghosts reach 0.165, or 0.132 from halves that ghosts of 0.13 do not reach."""
     frames = []
     for ranks, of_ranks, line in ((1, "* * *", ""), (2, grid, "balance 1.0 " + balance)):
         walls, kind = ("fix walls wall fsi/wall/particle", 3) if below == "wall" else ("", 1)
-        text = SETTLED.format(grid=of_ranks, neighbor=neighbor, balance=line, below=kind, walls=walls, material=below)
-        frames += run(tmp_path / str(ranks), text + watch(every=1) + "run 0\n", ranks, water_fsi=materials(water=WATER, wall=WALL)).frames()
+        text = SETTLED.format(grid=of_ranks, neighbor=neighbor, balance=line, below=kind,
+                              walls=walls, material=below)
+        frames += run(tmp_path / str(ranks), text + watch(every=1) + "run 0\n", ranks,
+                      water_fsi=materials(water=WATER, wall=WALL)).frames()
     one, two = frames
     assert np.array_equal(one["type"], two["type"]) and (one["type"] == 2).sum() == 288
     assert difference(one, two, "x") < 1e-12
@@ -548,29 +629,39 @@ def test_settling_looks_further_than_ghosts(tmp_path, below, grid, neighbor, bal
 @pytest.mark.slow
 @pytest.mark.parametrize("first", ["refine", "balance"])
 def test_balance(tmp_path, first):
-    """Ranks that take and give particles in the steps in which these split and merge, by either fix first: the same to round-off."""
-    want = run(tmp_path / "one", layers(2) + watch(every=100) + "run 100\n", flow_data=flow(2), water_fsi=MATERIALS).frames()
-    for ranks, grid, balance in ((2, "2 1 1", "shift x 10 1.0"), (4, "2 2 1", "shift xy 10 1.0"), (4, "2 2 1", "rcb")):
-        line = ("comm_style tiled\n" if balance == "rcb" else "") + f"fix balance all balance 10 1.0 {balance}\n"
+    """Ranks that take and give particles in the steps in which these split and merge, by either fix
+    first: the same to round-off."""
+    want = run(tmp_path / "one", layers(2) + watch(every=100) + "run 100\n", flow_data=flow(2),
+               water_fsi=MATERIALS).frames()
+    for ranks, grid, balance in ((2, "2 1 1", "shift x 10 1.0"), (4, "2 2 1", "shift xy 10 1.0"),
+                                 (4, "2 2 1", "rcb")):
+        line = ("comm_style tiled\n" if balance == "rcb"
+                else "") + f"fix balance all balance 10 1.0 {balance}\n"
         text = layers(2, grid=grid)
         text = text.replace("fix ref ", line + "fix ref ") if first == "balance" else text + line
-        got = run(tmp_path / f"{ranks}{balance[:3]}", text + watch(every=100) + "run 100\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
+        got = run(tmp_path / f"{ranks}{balance[:3]}", text + watch(every=100) + "run 100\n", ranks,
+                  flow_data=flow(2), water_fsi=MATERIALS)
         for a, b in zip(want, got.frames()):
             assert np.array_equal(a["type"], b["type"])
             for quantity in ("x", "v", "rho"):
                 assert difference(a, b, quantity) < 1e-11, (ranks, balance, quantity)
 
 
-@pytest.mark.parametrize("ranks, every, at, follow", [(1, 10, 85, False), (2, 10, 80, False), (2, 1, 50, False), (2, 10, 85, True)])
+@pytest.mark.parametrize("ranks, every, at, follow", [(1, 10, 85, False), (2, 10, 80, False),
+                                                      (2, 1, 50, False), (2, 10, 85, True)])
 def test_restart(tmp_path, ranks, every, at, follow):
-    """A run that goes on from a file, written between two events or in a step of one, is the same bit for bit, and so are the sums. The file has which types
-    pair_coeff keeps for levels, too."""
+    """A run that goes on from a file, written between two events or in a step of one, is the same
+    bit for bit, and so are the sums. The file has which types pair_coeff keeps for levels, too."""
     end, text = 2 * at - 10, layers(2, every=every)
     if follow:
-        text = re.sub("spacing 2 .*", "", text.replace("water water water", "water levels").replace("types 1 2 3 region one two", "region two finest 0.025"))
-    whole = run(tmp_path / "whole", text + watch(every=end) + f"restart {at} r.*\nrun {end}\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
-    again = text.replace("read_data flow.data", f"read_restart ../whole/r.{at}").replace("pair_style", "#").replace("pair_coeff", "#")
-    rest = run(tmp_path / "rest", again + watch(every=end) + f"restart {at} r.*\nrun {end - at}\n", ranks, water_fsi=MATERIALS)
+        text = re.sub("spacing 2 .*", "", text.replace("water water water", "water levels").replace(
+            "types 1 2 3 region one two", "region two finest 0.025"))
+    whole = run(tmp_path / "whole", text + watch(every=end) + f"restart {at} r.*\nrun {end}\n",
+                ranks, flow_data=flow(2), water_fsi=MATERIALS)
+    again = text.replace("read_data flow.data", f"read_restart ../whole/r.{at}").replace(
+        "pair_style", "#").replace("pair_coeff", "#")
+    rest = run(tmp_path / "rest", again + watch(every=end) + f"restart {at} r.*\nrun {end - at}\n",
+               ranks, water_fsi=MATERIALS)
     assert thermo(rest, end) and thermo(rest, end) == thermo(whole, end)
     assert not differing(whole.frames()[-1], rest.frames()[-1])
     assert "WARNING: Fix" not in rest.output
@@ -607,38 +698,56 @@ thermo_modify norm no lost error format float %20.15g
 
 # the second between two rows of water
 @pytest.mark.slow
-@pytest.mark.parametrize("strip", [dict(hole="0.74 0.86", faces="0.75 0.85", spacing=0.025, thin=""),
-                                   dict(hole="0.79 0.81", faces="0.7875 0.8125", spacing=0.0125, thin="thin 4")], ids=["thick", "thin"])
+@pytest.mark.parametrize("strip",
+                         [dict(hole="0.74 0.86", faces="0.75 0.85", spacing=0.025, thin=""),
+                          dict(hole="0.79 0.81", faces="0.7875 0.8125", spacing=0.0125,
+                               thin="thin 4")], ids=["thick", "thin"])
 def test_levels_around_an_elastic_body(tmp_path, strip):
-    """A heavy strip with sub-steps against a stream, two levels of water around it by the distance: momentum to round-off, the same on any number of ranks and
-    from a restart file. Also where the strip hides the water behind it."""
+    """A heavy strip with sub-steps against a stream, two levels of water around it by the distance:
+    momentum to round-off, the same on any number of ranks and from a restart file. Also where the
+    strip hides the water behind it."""
     runs, begin = {}, BODY[0].format(**strip)
-    for name, ranks, newton, grid, head, steps in (("one", 1, "on", "* * *", begin, 160), ("two", 2, "on", "2 1 1", begin, 160), ("four", 4, "off", "2 2 1", begin, 160),
-                                                    ("rest", 1, "on", "* * *", "read_restart ../one/r.85\n", 75)):
-        text = start(f"newton {newton}", f"processors {grid}", head, boundary="p p p") + BODY[1].format(**strip)
-        runs[name] = run(tmp_path / name, text + watch(every=160) + f"restart 85 r.*\nrun {steps}\n", ranks,
-                         water_fsi=materials(water=WATER, rubber="solid rho 8000 young 3e6 poisson 0.4"))
+    for name, ranks, newton, grid, head, steps in (("one", 1, "on", "* * *", begin, 160),
+                                                   ("two", 2, "on", "2 1 1", begin, 160),
+                                                   ("four", 4, "off", "2 2 1", begin, 160),
+                                                    ("rest", 1, "on", "* * *",
+                                                     "read_restart ../one/r.85\n", 75)):
+        text = start(f"newton {newton}", f"processors {grid}", head,
+                     boundary="p p p") + BODY[1].format(**strip)
+        runs[name] = run(tmp_path / name,
+                         text + watch(every=160) + f"restart 85 r.*\nrun {steps}\n", ranks,
+                         water_fsi=materials(water=WATER,
+                                             rubber="solid rho 8000 young 3e6 poisson 0.4"))
     last = {name: result.frames()[-1] for name, result in runs.items()}
     assert set(last["one"]["type"]) == {1, 2, 3, 4}
     first, end = (np.array(thermo(runs["one"], step)[0].split(), float) for step in (0, 160))
-    assert np.abs(end[-2:] - first[-2:]).max() < 1e-13 * first[-2] and end[-10] > first[-10] and end[-9] > 50
+    assert (np.abs(end[-2:] - first[-2:]).max() < 1e-13 * first[-2] and end[-10] > first[-10]
+            and end[-9] > 50)
     for name in ("two", "four"):
         assert np.array_equal(last["one"]["type"], last[name]["type"])
         for quantity in ("x", "v", "rho"):
             assert difference(last["one"], last[name], quantity) < 1e-11, (name, quantity)
-    assert thermo(runs["rest"], 160) == thermo(runs["one"], 160) and not differing(last["one"], last["rest"])
+    assert thermo(runs["rest"], 160) == thermo(runs["one"],
+                                               160) and not differing(last["one"], last["rest"])
 
 
-# the same with the body's type second, behind which levels come; types, spacings and distances given, and left to the package
+# the same with the body's type second, behind which levels come; types, spacings and distances
+# given, and left to the package
 def found_levels(given):
     levels = [DX * 2.0**(-k / 2) for k in (1, 2)]
     widest = 0.25 + (2 * 1.5 * DX + levels[0])
-    begin = BODY[0].format(hole="0.74 0.86", faces="0.75 0.85", spacing=0.025).replace("create_atoms 4", "create_atoms 2").replace("body type 4", "body type 2")
+    begin = BODY[0].format(hole="0.74 0.86", faces="0.75 0.85", spacing=0.025).replace(
+        "create_atoms 4", "create_atoms 2").replace("body type 4", "body type 2")
     physics = BODY[1].format(spacing=0.025, thin="")
-    for old, new in (("water water water rubber", "water rubber water water" if given else "water rubber levels"),
-                     ("NULL NULL NULL rubber", "NULL rubber NULL NULL" if given else "NULL rubber levels"),
-                     ("spacing 2 0.0353553390593 spacing 3 0.025 spacing 4 0.025", "spacing 2 0.025" + f" spacing 3 {levels[0]!r} spacing 4 {levels[1]!r}" * given),
-                     ("types 1 2 3 distance body 0.5 0.25", f"types 1 3 4 distance body {widest!r} 0.25" if given else "distance body 0.25 finest 0.025")):
+    for old, new in (("water water water rubber", "water rubber water water" if given
+                      else "water rubber levels"),
+                     ("NULL NULL NULL rubber", "NULL rubber NULL NULL" if given
+                      else "NULL rubber levels"),
+                     ("spacing 2 0.0353553390593 spacing 3 0.025 spacing 4 0.025", "spacing 2 0.025"
+                      + f" spacing 3 {levels[0]!r} spacing 4 {levels[1]!r}" * given),
+                     ("types 1 2 3 distance body 0.5 0.25",
+                      f"types 1 3 4 distance body {widest!r} 0.25" if given
+                      else "distance body 0.25 finest 0.025")):
         assert old in physics
         physics = physics.replace(old, new)
     return begin, physics
@@ -647,41 +756,56 @@ def found_levels(given):
 @pytest.mark.slow
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_types_spacings_and_distances_follow(tmp_path, ranks):
-    """From the distance and spacing of the finest level around a moving body: bit for bit what they are where all are given, and from a restart file."""
+    """From the distance and spacing of the finest level around a moving body: bit for bit what they
+    are where all are given, and from a restart file."""
     last = {}
     for name, given, steps in (("given", True, 160), ("found", False, 160), ("rest", False, 75)):
         begin, physics = found_levels(given)
         if name == "rest":
             begin = "read_restart ../found/r.85\n"
-        text = start(begin, boundary="p p p") + physics + watch(every=160) + f"restart 85 r.*\nrun {steps}\n"
-        result = run(tmp_path / name, text, ranks, water_fsi=materials(water=WATER, rubber="solid rho 8000 young 3e6 poisson 0.4"))
+        text = start(begin, boundary="p p p") + physics + watch(
+            every=160) + f"restart 85 r.*\nrun {steps}\n"
+        result = run(tmp_path / name, text, ranks, water_fsi=materials(
+            water=WATER, rubber="solid rho 8000 young 3e6 poisson 0.4"))
         last[name] = result.frames()[-1]
         assert float(thermo(result, 160)[0].split()[3]) > 600    # splits
     assert set(last["given"]["type"]) == {1, 2, 3, 4}
-    assert not differing(last["given"], last["found"]) and not differing(last["found"], last["rest"])
+    assert not differing(last["given"], last["found"]) and not differing(last["found"],
+                                                                         last["rest"])
 
 
 @pytest.mark.parametrize("dim, zone", [(2, "two blocks"), (2, "moving"), (3, "sphere")])
 def test_zones_around_a_region(dim, zone):
-    """Before the first step each particle is of the level of its distance from the region, by the kernel's support of the coarser level and a spacing from
-    one level to the next; and what leaves merges again."""
+    """Before the first step each particle is of the level of its distance from the region, by the
+    kernel's support of the coarser level and a spacing from one level to the next; and what leaves
+    merges again."""
     n, levels = ((40, 40), 3) if dim == 2 else ((22, 22, 22), 2)
     x, size = lattice(n, DX), [k * DX for k in n] + [0] * (3 - dim)
     spacing = DX * 2.0**(-np.arange(levels + 1) / dim)
     wider = np.append(np.cumsum((3 * spacing[:-2] + spacing[1:-1])[::-1])[::-1], 0.0)
-    blocks = {"two blocks": [((0.9, 0.95), (1.0, 1.1)), ((1.0, 1.0), (1.2, 1.05))], "moving": [((0.95, 0.95), (1.05, 1.1))], "sphere": []}[zone]
-    regions = {"two blocks": ["region one block 0.9 1.0 0.95 1.1 INF INF units box", "region two block 1.0 1.2 1.0 1.05 INF INF units box", "region zone union 2 one two"],
-               "moving": ["variable place equal 0.5*(step<5)", "region zone block 0.45 0.55 0.95 1.1 INF INF units box move v_place NULL NULL"],
+    blocks = {"two blocks": [((0.9, 0.95), (1.0, 1.1)), ((1.0, 1.0), (1.2, 1.05))],
+              "moving": [((0.95, 0.95), (1.05, 1.1))], "sphere": []}[zone]
+    regions = {"two blocks": ["region one block 0.9 1.0 0.95 1.1 INF INF units box",
+                              "region two block 1.0 1.2 1.0 1.05 INF INF units box",
+                              "region zone union 2 one two"],
+               "moving": ["variable place equal 0.5*(step<5)", "region zone block 0.45 0.55 0.95 "
+                          "1.1 INF INF units box move v_place NULL NULL"],
                "sphere": ["region zone sphere 0.55 0.55 0.55 0.08 units box"]}[zone]
-    with Scene(x, dim=dim, dx=DX, box=([0, 0, 0], size), boundary="p p p", materials=(WATER,) * (levels + 1), fluid="sound 15 tension yes", dt=1e-6,
-               commands=("pair_coeff * * NULL m0 levels", *regions, f"fix ref all fsi/refine 10 region zone finest {spacing[-1]!r} settle 0")) as s:
+    with Scene(x, dim=dim, dx=DX, box=([0, 0, 0], size), boundary="p p p",
+               materials=(WATER,) * (levels + 1), fluid="sound 15 tension yes", dt=1e-6,
+               commands=("pair_coeff * * NULL m0 levels", *regions, "fix ref all fsi/refine 10 "
+                         f"region zone finest {spacing[-1]!r} settle 0")) as s:
         go(s, 0)
         at = s.get("x")[:, :dim]
-        outside = [np.linalg.norm(np.maximum(0, np.maximum(np.subtract(low, at), np.subtract(at, high))), axis=1) for low, high in blocks] or [np.linalg.norm(at - 0.55, axis=1) - 0.08]
-        r, half = np.min(outside, axis=0), 0.25 * dim**0.5 * spacing[0]    # as far halves go from where the old one was
+        outside = [np.linalg.norm(
+            np.maximum(0, np.maximum(np.subtract(low, at), np.subtract(at, high))),
+            axis=1) for low, high in blocks] or [np.linalg.norm(at - 0.55, axis=1) - 0.08]
+        # as far halves go from where the old one was
+        r, half = np.min(outside, axis=0), 0.25 * dim**0.5 * spacing[0]
         level = s.get("type") - 1
         for k in range(1, levels + 1):
-            assert not np.any(level[r < wider[k - 1] - 2 * half] < k) and not np.any(level[r > wider[k - 1] + 2 * half] >= k)
+            assert not np.any(level[r < wider[k - 1] - 2 * half]
+                              < k) and not np.any(level[r > wider[k - 1] + 2 * half] >= k)
         assert set(level) == set(range(levels + 1))
         go(s, 20)
         assert (outputs(s)[MERGES] > 50) == (zone == "moving")
@@ -690,40 +814,52 @@ def test_zones_around_a_region(dim, zone):
 def test_given_again_between_runs(tmp_path):
     """The fix given again, and runs in parts, change nothing."""
     again = "unfix ref\nfix ref all fsi/refine 10 types 1 2 3 region one two\n"
-    whole = run(tmp_path / "whole", layers(2) + watch(every=90) + "run 45\nrun 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
-    parts = run(tmp_path / "parts", layers(2).replace("f_ref[*]", "") + watch(every=90) + f"run 45\n{again}run 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
+    whole = run(tmp_path / "whole", layers(2) + watch(every=90) + "run 45\nrun 45\n",
+                flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
+    parts = run(tmp_path / "parts", layers(2).replace("f_ref[*]", "") + watch(every=90)
+                + f"run 45\n{again}run 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
     assert not differing(whole, parts)
 
 
 BAD = {
     "3": r"Illegal fix fsi/refine command: missing argument|requires keyword types",
     "0 types 1 2 region one": r"Fix fsi/refine N 0 must be",
-    "10 types 1 region one": r"requires keyword types with two atom types or more, the coarsest first",
+    "10 types 1 region one": r"requires keyword types with two atom types or more, the coarsest "
+    r"first",
     "10 types 1 2 2 region one two": r"types: 2 is there twice",
     "10 types 1 9 region one": r"Fix fsi/refine types 9 must be between 1 and 5",
-    "10 types 1 2 3 region one": r"has 3 types and 1 regions: expected one for each type but the first",
+    "10 types 1 2 3 region one": r"has 3 types and 1 regions: expected one for each type but the "
+    r"first",
     "10 types 1 2 region nowhere": r"Region nowhere of fix fsi/refine does not exist",
     "10 types 1 2 zone one": r"has 2 types|integer|Fix fsi/refine types zone",
     "10 types 1 2 region one settle -1": r"Fix fsi/refine settle -1 must be",
     "10 types 1 2 region one settle": r"Illegal fix fsi/refine settle command: missing argument",
     "10 types 1 2 region one distance all 0.1": r"takes region or distance, not both",
     "10 types 1 2 distance nobody 0.1": r"Group nobody of fix fsi/refine distance does not exist",
-    "10 types 1 2 distance some 0.1\nrun 0\ngroup some delete": r"Group some of fix fsi/refine distance does not exist",
+    "10 types 1 2 distance some 0.1\nrun 0\ngroup some delete": r"Group some of fix fsi/refine "
+    r"distance does not exist",
     "10 types 1 2 3 distance wall 0.2 0.3": r"distance: 0.3 after 0.2, expected less",
     "10 types 1 2 3 distance wall 0.3 0.2": r"there is 0.1 for atom type 2: expected at least 0.185",
     "10 types 1 3 region one": r"spacings of 0.05 and 0.025: expected 0.0353553 of the second",
-    "10 types 1 4 region one": r"atom types 1 and 4 have the density 1000 and 900: expected one fluid",
+    "10 types 1 4 region one": r"atom types 1 and 4 have the density 1000 and 900: expected one "
+    r"fluid",
     "10 types 1 5 region one": r"atom type 5 is no fluid: its material is a wall",
-    "10 types 1 2 3 region one two": r"is not in the zone of type 2, but only 0.\d+ from atom \d+, which is in that of type 3 \(one and two\)",
-    "10 types 1 2 region one\nfix more wet fsi/refine 20 types 2 3 region two": r"fix ref and fix more both have levels of 240 particles, the first of them atom 6: expected one fix",
-    "10 types 1 2 region ends": r"is in the buffer of fix out, and in the zone of a finer level: keep open ends in the coarsest level",
-    "10 region one finest 0.0353553": r"finest: from 0.05 to 0.0353553 there are 1 levels, for which pair_coeff keeps 0 atom types: expected create_box 6 and",
-    "10 region one finest 0.03": r"finest: 0.03 is not the spacing of a finer level, 0.05 times 2\^\(-k/2\): the nearest is 0.0353553",
+    "10 types 1 2 3 region one two": r"is not in the zone of type 2, but only 0.\d+ from atom \d+, "
+    r"which is in that of type 3 \(one and two\)",
+    "10 types 1 2 region one\nfix more wet fsi/refine 20 types 2 3 region two": r"fix ref and fix "
+    r"more both have levels of 240 particles, the first of them atom 6: expected one fix",
+    "10 types 1 2 region ends": r"is in the buffer of fix out, and in the zone of a finer level: "
+    r"keep open ends in the coarsest level",
+    "10 region one finest 0.0353553": r"finest: from 0.05 to 0.0353553 there are 1 levels, for "
+    r"which pair_coeff keeps 0 atom types: expected create_box 6 and",
+    "10 region one finest 0.03": r"finest: 0.03 is not the spacing of a finer level, 0.05 times "
+    r"2\^\(-k/2\): the nearest is 0.0353553",
     "10 region one finest 0": r"Fix fsi/refine finest 0 must be > 0",
     "10 region one finest": r"Illegal fix fsi/refine finest command: missing argument",
     "10 region one two finest 0.025": r"finest has 2 regions: expected one",
     "10 distance wall 0.3 0.1 finest 0.025": r"finest has 2 distances: expected one",
-    "10 region cut finest 0.025": r"finest: region cut is of style intersect: expected one shape or a union",
+    "10 region cut finest 0.025": r"finest: region cut is of style intersect: expected one shape "
+    r"or a union",
     "10 finest 0.025": r"finest has 0 regions: expected one",
     "10 types 1 2 region one finest 0.0353553": r"the coarsest first, or keyword finest",
 }
@@ -751,16 +887,20 @@ region ends block 0.1 0.8 0.2 0.6 INF INF units box
 fix ref fluid fsi/refine {words}
 run 0
 """
-    done = lammps(tmp_path, start(boundary="f p p") + text, water_fsi=materials(water=WATER, oil="fluid rho 900", wall=WALL))
-    assert done.status != 0 and any(re.search(BAD[words], line) for line in done.errors), done.output[-600:]
+    done = lammps(tmp_path, start(boundary="f p p") + text,
+                  water_fsi=materials(water=WATER, oil="fluid rho 900", wall=WALL))
+    assert done.status != 0 and any(re.search(BAD[words], line)
+                                    for line in done.errors), done.output[-600:]
 
 
 def test_types_set_between_runs_leave_masses():
-    """A particle with the mass of another level would split below the finest one. The mass of a level is the density over the number density of its
-    lattice, which for this kernel is 0.5 % above 1/dx^2."""
+    """A particle with the mass of another level would split below the finest one. The mass of a
+    level is the density over the number density of its lattice, which for this kernel is 0.5 %
+    above 1/dx^2."""
     with box_scene(lattice((24, 24), DX)) as s:
         go(s, 20)
-        with pytest.raises(Exception, match=r"atom \d+ of type 1 has mass 1.2\d+, expected some 2\.48\d+ on"):
+        with pytest.raises(Exception,
+                           match=r"atom \d+ of type 1 has mass 1.2\d+, expected some 2\.48\d+ on"):
             s.run_lines("set group all type 1", "run 10")
         s.run_lines("set type 1 mass 2.5", "run 0")
 
@@ -782,15 +922,19 @@ run 0
 """
     for zone, warned in (("0.3 0.6", True), ("0.6 2", False)):
         done = run(tmp_path / zone, text.format(zone), water_fsi=materials(water=WATER, wall=WALL))
-        assert warned == bool(re.search(r"WARNING: Fix fsi/refine: \d+ fluid particles, the first of them atom \d+, are beside a body or wall of finer spacing", done.output))
+        assert warned == bool(re.search(
+            r"WARNING: Fix fsi/refine: \d+ fluid particles, the first of them atom \d+, are beside "
+            r"a body or wall of finer spacing", done.output))
 
 
 def test_open_channel(tmp_path):
-    """Between an inlet and an outlet, through a finer zone: mass is what came in and went out, IDs are unique; who has found no partner
-    passes the outlet."""
+    """Between an inlet and an outlet, through a finer zone: mass is what came in and went out, IDs
+    are unique; who has found no partner passes the outlet."""
     x = lattice((32, 8), DX)
-    with box_scene(x, (2.0, 0, 0), size=[2.4, 0.4, 0], boundary="f p p", zone="block 0.6 1.0 INF INF INF INF", fluid="density/diffusion 0.1",
-                   before=("fix i all fsi/inlet xlo 0 velocity 2 0 0", "fix o all fsi/outlet xhi 1.6"), room=0.4) as s:
+    with box_scene(x, (2.0, 0, 0), size=[2.4, 0.4, 0], boundary="f p p",
+                   zone="block 0.6 1.0 INF INF INF INF", fluid="density/diffusion 0.1",
+                   before=("fix i all fsi/inlet xlo 0 velocity 2 0 0",
+                           "fix o all fsi/outlet xhi 1.6"), room=0.4) as s:
         go(s, 0)
         mass = exact_mass(s)
         go(s, 600)
@@ -798,35 +942,47 @@ def test_open_channel(tmp_path):
         y, level = s.get("x"), s.get("type")
         assert outputs(s)[SPLITS] > 150 and outputs(s)[MERGES] > 100
         print((level[y[:, 0] > 1.2] == 2).mean())
-        assert (level[y[:, 0] < 0.55] == 1).all() and (level[y[:, 0] > 1.2] == 2).mean() < 0.1 and (level[(y[:, 0] > 0.7) & (y[:, 0] < 0.95)] == 2).all()
-        assert abs(s.get("rho") / 1000 - 1).max() < 1e-3 and np.abs(s.get("v") - (2, 0, 0)).max() < 0.05
+        assert (level[y[:, 0] < 0.55] == 1).all() and (level[y[:, 0] > 1.2] == 2).mean() < 0.1 and (
+            level[(y[:, 0] > 0.7) & (y[:, 0] < 0.95)] == 2).all()
+        assert abs(s.get("rho") / 1000 - 1).max() < 1e-3 and np.abs(s.get("v")
+                                                                    - (2, 0, 0)).max() < 0.05
         between = lambda m, p: m[(p > 0) & (p < 1.6)].sum()
-        assert between(s.get("rmass"), y[:, 0]) == pytest.approx(mass * 32 / 42, rel=0.02) and abs(came) < 0.03 * mass
+        assert between(s.get("rmass"), y[:, 0]) == pytest.approx(mass * 32 / 42, rel=0.02) and abs(
+            came) < 0.03 * mass
 
 
 def test_zone_at_a_plane():
-    """A zone that ends at an open end, in whatever order the fixes are: the buffer is filled with what is coarse, and the next run begins as the first one did."""
+    """A zone that ends at an open end, in whatever order the fixes are: the buffer is filled with
+    what is coarse, and the next run begins as the first one did."""
     ends = ("fix i all fsi/inlet xlo 0 velocity 1 0 0", "fix o all fsi/outlet xhi 1.6")
     states = []
     for first in (True, False):
-        with box_scene(lattice((32, 8), DX), (1.0, 0, 0), size=[2.0, 0.4, 0], boundary="f p p", zone="block 0 0.6 INF INF INF INF", room=0.4,
-                       fluid="density/diffusion 0.1 background 500", before=ends if first else ()) as s:
+        with box_scene(lattice((32, 8), DX), (1.0, 0, 0), size=[2.0, 0.4, 0], boundary="f p p",
+                       zone="block 0 0.6 INF INF INF INF", room=0.4,
+                       fluid="density/diffusion 0.1 background 500", before=ends if first
+                       else ()) as s:
             s.run_lines(*(() if first else ends))
             go(s, 0)
             assert (s.get("type") == 2).sum() == 2 * 12 * 8 and s.n == 12 * 8 + 42 * 8
             go(s, 60)
             go(s, 60)
-            assert (s.get("type")[s.get("x")[:, 0] < 0] == 1).all() and abs(s.get("rho") / 1000 - 1).max() < 0.01
+            assert (s.get("type")[s.get("x")[:, 0] < 0]
+                    == 1).all() and abs(s.get("rho") / 1000 - 1).max() < 0.01
             states.append((s.get("type"), s.get("x")))
-    assert np.array_equal(states[0][0], states[1][0]) and np.abs(states[0][1] - states[1][1]).max() < 1e-11
+    assert np.array_equal(states[0][0],
+                          states[1][0]) and np.abs(states[0][1] - states[1][1]).max() < 1e-11
 
 
 def test_open_end_counts_finer_fluid():
-    """Where there is none of the coarsest within two buffer lengths before a plane: particles three per cent too heavy for their lattice, as finer ones, too."""
+    """Where there is none of the coarsest within two buffer lengths before a plane: particles three
+    per cent too heavy for their lattice, as finer ones, too."""
     m = 1.03 * 1000 / Kernel("wendland", 2, 1.5 * DX).lattice_sum(DX, 2)
-    ends = (f"set group all mass {m!r}", "fix i all fsi/inlet xlo 0 velocity 0 0 0", "fix o all fsi/outlet xhi 1.6")
+    ends = (f"set group all mass {m!r}", "fix i all fsi/inlet xlo 0 velocity 0 0 0",
+            "fix o all fsi/outlet xhi 1.6")
     for zone in ("5 6", "0 1.2"):
-        with box_scene(lattice((32, 8), DX), size=[2.0, 0.4, 0], boundary="f p p", zone=f"block {zone} INF INF INF INF", refine="region zone settle 0", room=0.4,
+        with box_scene(lattice((32, 8), DX), size=[2.0, 0.4, 0], boundary="f p p",
+                       zone=f"block {zone} INF INF INF INF", refine="region zone settle 0",
+                       room=0.4,
                        fluid="density/diffusion 0.1 background 500", before=ends) as s:
             go(s, 0)
             fill = s.lmp.extract_fix("i", 0, 1, 10)

@@ -8,7 +8,8 @@ import pytest
 from decks import WALL, atoms, box, materials, resume, start
 from scenes import WATER as INVISCID, dam_gate, difference, differing, fluid_box, lammps, run, watch
 
-# Going on with other neighbor lists or another rank count changes the order of sums only: see TRAJECTORY in test_parallel.py;
+# Going on with other neighbor lists or another rank count changes the order of sums only: see
+# TRAJECTORY in test_parallel.py;
 # 40 steps instead of 100.
 ROUND_OFF = 1e-11
 # Relative error of a number that LAMMPS writes with 16 digits and reads again.
@@ -17,31 +18,43 @@ DIGITS = 1e-14
 MODES = {
     "dam 2D": lambda: dam_gate(2),
     "dam 3D": lambda: dam_gate(3),
-    "article": lambda: dam_gate(2, density="scheme article", fluid="sound 10 tension yes artificial/visc 0.05 0", solid="artificial/visc 0.1 0.1"),
+    "article": lambda: dam_gate(2, density="scheme article",
+                                fluid="sound 10 tension yes artificial/visc 0.05 0",
+                                solid="artificial/visc 0.1 0.1"),
     "fluid": lambda: fluid_box(2),
-    "shift": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5"),
-    "shift every third step": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5 shift/every 3"),
-    "shift in a full box": lambda: dam_gate(2, fluid="sound 10 tension yes background 50 density/diffusion 0.1 shift 0.5"),
-    "surfaces": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 density/surface yes"),
-    "tl 2D": lambda: dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0.1 hourglass 0.1"),
-    "tl 3D": lambda: dam_gate(3, solid_style="fsi/solid/tl", solid="law neohookean", sph="substeps 4"),
+    "shift": lambda: dam_gate(
+        2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5"),
+    "shift every third step": lambda: dam_gate(
+        2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5 shift/every 3"),
+    "shift in a full box": lambda: dam_gate(
+        2, fluid="sound 10 tension yes background 50 density/diffusion 0.1 shift 0.5"),
+    "surfaces": lambda: dam_gate(
+        2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 density/surface yes"),
+    "tl 2D": lambda: dam_gate(2, solid_style="fsi/solid/tl",
+                              solid="artificial/visc 0.1 0.1 hourglass 0.1"),
+    "tl 3D": lambda: dam_gate(3, solid_style="fsi/solid/tl", solid="law neohookean",
+                              sph="substeps 4"),
 }
 
 
 def close(a, b, tolerance=ROUND_OFF):
     for quantity in ("x", "v", "rho", "stress"):
-        # the stress of a total-Lagrangian solid comes from its positions: 1e-16 of 0.2 m over 0.01 m of 2 MPa, and grows
-        assert difference(a, b, quantity) < tolerance * (10 if quantity == "stress" else 1), quantity
+        # the stress of a total-Lagrangian solid comes from its positions: 1e-16 of 0.2 m over 0.01
+        # m of 2 MPa, and grows
+        assert difference(a, b, quantity) < tolerance * (10 if quantity == "stress"
+                                                         else 1), quantity
 
 
 @pytest.mark.parametrize("ranks", (1, 2))
 @pytest.mark.parametrize("mode", MODES)
 def test_restart_n_goes_on_bit_for_bit(tmp_path, mode, ranks):
-    """`restart N` makes the running simulation rebuild its lists at N, and so may continue exactly."""
+    """`restart N` makes the running simulation rebuild its lists at N, and so may continue
+    exactly."""
     scene = MODES[mode]()
     whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks,
                 scene_data=scene.data()).frames()[-1]
-    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n",
+    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80)
+               + "restart 40 other.*\nrun 40\n",
                ranks).frames("rest.dump")[-1]
     assert whole.step == rest.step == 80
     assert differing(whole, rest) == []
@@ -61,10 +74,15 @@ thermo_modify norm no
 
 @pytest.mark.parametrize("ranks", (1, 2))
 def test_shifting_beside_wall_particles_goes_on_bit_for_bit(tmp_path, ranks):
-    """The density of walls, found in setup, too, is another than the running simulation had there."""
-    make = box("-0.4 1.4 -0.4 1", 0.05, water="0 1 0 0.6", wall="0 1 -0.2 0") + "displace_atoms all random 0.005 0.005 0 7 units box\n" + WALL_PARTICLES
-    whole = run(tmp_path, make + watch(every=120) + "restart 60 mid.*\nrun 120\n", ranks).frames()[-1]
-    rest = run(tmp_path, start() + "read_restart mid.60\n" + WALL_PARTICLES + watch("rest.dump", 120) + "restart 60 other.*\nrun 60\n", ranks).frames("rest.dump")[-1]
+    """The density of walls, found in setup, too, is another than the running simulation had
+    there."""
+    make = (box("-0.4 1.4 -0.4 1", 0.05, water="0 1 0 0.6", wall="0 1 -0.2 0")
+            + "displace_atoms all random 0.005 0.005 0 7 units box\n" + WALL_PARTICLES)
+    whole = run(tmp_path, make + watch(every=120) + "restart 60 mid.*\nrun 120\n",
+                ranks).frames()[-1]
+    rest = run(tmp_path, start() + "read_restart mid.60\n"
+               + WALL_PARTICLES + watch("rest.dump", 120) + "restart 60 other.*\nrun 60\n",
+               ranks).frames("rest.dump")[-1]
     assert whole.step == rest.step == 120
     assert differing(whole, rest) == []
 
@@ -72,34 +90,46 @@ def test_shifting_beside_wall_particles_goes_on_bit_for_bit(tmp_path, ranks):
 @pytest.mark.parametrize("ranks", (1, 2))
 @pytest.mark.parametrize("bounds", ("s s p", "f s p"))
 def test_particles_that_leave_the_box_go_on_bit_for_bit(tmp_path, bounds, ranks):
-    """They move on after the lists of the step in which a file is written, and are in its box: a shrink-wrapped one is around them; what leaves
-    a fixed one, as one row does here in that half step, is lost a step later."""
+    """They move on after the lists of the step in which a file is written, and are in its box: a
+    shrink-wrapped one is around them; what leaves a fixed one, as one row does here in that half
+    step, is lost a step later."""
     physics = "fsi/material water fluid rho 1000\npair_style fsi/fluid sound 20\npair_coeff * * NULL water\nfix sph all fsi 0.01 wendland 1.5\n" \
         "timestep 2e-4\nneighbor 0.003 bin\nthermo_modify lost ignore\n"
-    make = box("0 0.105 0 0.1", 0.01, boundary=bounds, water="0 0.1 0 0.1") + "velocity all set 1 0.3 0 units box\nvelocity all ramp vx -1 0.68 x 0 0.095 sum yes units box\n"
-    whole = run(tmp_path, make + physics + watch(every=60) + "restart 30 mid.*\nrun 60\n", ranks).frames()[-1]
-    rest = run(tmp_path, start(boundary=bounds) + "read_restart mid.30\n" + physics + watch("rest.dump", 60) + "restart 30 other.*\nrun 30\n", ranks).frames("rest.dump")[-1]
-    assert whole.step == rest.step == 60 and (len(whole["id"]) < 100) == (bounds[0] == "f") and differing(whole, rest) == []
+    make = (box("0 0.105 0 0.1", 0.01, boundary=bounds, water="0 0.1 0 0.1") + "velocity all set 1 "
+            "0.3 0 units box\nvelocity all ramp vx -1 0.68 x 0 0.095 sum yes units box\n")
+    whole = run(tmp_path, make + physics + watch(every=60) + "restart 30 mid.*\nrun 60\n",
+                ranks).frames()[-1]
+    rest = run(tmp_path, start(boundary=bounds) + "read_restart mid.30\n" + physics
+               + watch("rest.dump", 60) + "restart 30 other.*\nrun 30\n",
+               ranks).frames("rest.dump")[-1]
+    assert whole.step == rest.step == 60 and (len(whole["id"]) < 100) == (
+        bounds[0] == "f") and differing(whole, rest) == []
 
 
 @pytest.mark.parametrize("mode", MODES)
 def test_write_restart_changes_rank_count(tmp_path, mode):
-    """write_restart on one rank, going on with four (and pair styles given again, which must be the same)."""
+    """write_restart on one rank, going on with four (and pair styles given again, which must be the
+    same)."""
     scene = MODES[mode]()
-    whole = run(tmp_path, scene.text() + watch(every=40) + "run 40\nwrite_restart mid.data\nrun 40\n",
+    whole = run(tmp_path, scene.text() + watch(every=40)
+                + "run 40\nwrite_restart mid.data\nrun 40\n",
                 scene_data=scene.data()).frames()[-1]
-    rest = run(tmp_path, resume(scene, "mid.data", "2 2 1") + watch("rest.dump", 80) + "run 40\n", 4)
+    rest = run(tmp_path, resume(scene, "mid.data", "2 2 1") + watch("rest.dump", 80) + "run 40\n",
+               4)
     close(whole, rest.frames("rest.dump")[-1])
-    again = scene.setup() + "read_restart mid.data\n" + scene.physics() + watch("again.dump", 80) + "run 40\n"
+    again = scene.setup() + "read_restart mid.data\n" + scene.physics() + watch("again.dump",
+                                                                                80) + "run 40\n"
     close(whole, run(tmp_path, again).frames("again.dump")[-1])
 
 
 def test_restart_of_one_processor_grid_on_another(tmp_path):
     """Restart files of many ranks (mid.%) read by one."""
     scene = dam_gate(2)
-    whole = run(tmp_path, scene.text("2 2 1") + watch(every=40) + "run 40\nwrite_restart mid.%\nrun 40\n", 4,
+    whole = run(tmp_path, scene.text("2 2 1") + watch(every=40)
+                + "run 40\nwrite_restart mid.%\nrun 40\n", 4,
                 scene_data=scene.data()).frames()[-1]
-    close(whole, run(tmp_path, resume(scene, "mid.%") + watch("rest.dump", 80) + "run 40\n").frames("rest.dump")[-1])
+    close(whole, run(tmp_path, resume(scene, "mid.%") + watch("rest.dump", 80)
+                     + "run 40\n").frames("rest.dump")[-1])
 
 
 @pytest.mark.parametrize("ranks", (1, 2))
@@ -107,7 +137,8 @@ def test_restart_of_one_processor_grid_on_another(tmp_path):
 def test_two_halves_are_the_whole(tmp_path, mode, ranks):
     scene = MODES[mode]()
     frames = []
-    for name, runs in (("whole", "run 80\n"), ("halves", "run 40\nrun 40\n"), ("pre", "run 40\nrun 0\nrun 40 pre no\n")):
+    for name, runs in (("whole", "run 80\n"), ("halves", "run 40\nrun 40\n"),
+                       ("pre", "run 40\nrun 0\nrun 40 pre no\n")):
         frames.append(run(tmp_path / name, scene.text() + watch(every=80) + runs, ranks,
                           scene_data=scene.data()).frames()[-1])
     close(frames[0], frames[1])
@@ -126,20 +157,25 @@ def test_run_0_changes_nothing(tmp_path, mode):
 
 
 def test_walls_survive(tmp_path):
-    """Position of the moving wall and number of reflections; the guard is wide here, so that there are some."""
+    """Position of the moving wall and number of reflections; the guard is wide here, so that there
+    are some."""
     scene = fluid_box(2)
     scene.walls[0] = (0, 1, 0.0, "velocity 1 0 0 guard 0.45")
     count = 'print "REFLECTED $(f_walls)"\n'
-    text = scene.text() + watch(every=40) + f"run 40\n{count}write_restart mid.data\nrun 40\n{count}"
+    text = scene.text() + watch(
+        every=40) + f"run 40\n{count}write_restart mid.data\nrun 40\n{count}"
     whole = run(tmp_path, text, scene_data=scene.data())
-    rest = run(tmp_path, resume(scene, "mid.data") + f"run 0\n{count}" + watch("rest.dump", 80) + f"run 40\n{count}", 2)
-    counts = [[float(line.split()[1]) for line in r.output.splitlines() if line.startswith("REFLECTED")]
+    rest = run(tmp_path, resume(scene, "mid.data") + f"run 0\n{count}" + watch("rest.dump", 80)
+               + f"run 40\n{count}", 2)
+    counts = [[float(line.split()[1]) for line in r.output.splitlines()
+               if line.startswith("REFLECTED")]
               for r in (whole, rest)]
     assert counts[0] == counts[1] and 0 < counts[0][0] < counts[0][1]
     close(whole.frames()[-1], rest.frames("rest.dump")[-1])
     # and it is the wall that makes the difference: at its old place the fluid would feel it less
     scene.walls[0] = (0, 1, 0.0, "guard 0.45")
-    still = run(tmp_path / "still", scene.text() + watch(every=80) + "run 80\n", scene_data=scene.data()).frames()[-1]
+    still = run(tmp_path / "still", scene.text() + watch(every=80) + "run 80\n",
+                scene_data=scene.data()).frames()[-1]
     assert difference(whole.frames()[-1], still, "v") > 1e-3
 
 
@@ -149,7 +185,9 @@ def test_restart_with_other_walls_is_refused_or_safe(tmp_path):
     run(tmp_path, scene.text() + "run 5\nwrite_restart mid.data\n", scene_data=scene.data())
     scene.walls = [*scene.walls, (1, -1, 0.16, "")]
     done = lammps(tmp_path, resume(scene, "mid.data") + watch("rest.dump", 1) + "run 0\n")
-    assert done.status != 0 and any(re.search(r"has the walls xlo xhi ylo yhi, the restart file xlo xhi ylo of it", line) for line in done.errors)
+    assert done.status != 0 and any(
+        re.search(r"has the walls xlo xhi ylo yhi, the restart file xlo xhi ylo of it", line)
+        for line in done.errors)
 
 
 def test_wall_that_the_second_script_puts_elsewhere_stands_there(tmp_path):
@@ -158,15 +196,19 @@ def test_wall_that_the_second_script_puts_elsewhere_stands_there(tmp_path):
     scene.walls[1] = (0, -1, 0.2, "")
     run(tmp_path, scene.text() + "run 5\nwrite_restart mid.data\n", scene_data=scene.data())
     scene.walls[1] = (0, -1, 0.22, "")
-    done = run(tmp_path, resume(scene, "mid.data") + "run 200\nvariable right equal bound(all,xmax)\nprint \"RIGHT $(v_right)\"\n")
-    assert re.search(r"WARNING: Fix fsi/wall/mirror walls: wall xhi was put at 0.2 when the restart file was written, and is at 0.22 now", done.output)
+    done = run(tmp_path, resume(scene, "mid.data")
+               + "run 200\nvariable right equal bound(all,xmax)\nprint \"RIGHT $(v_right)\"\n")
+    assert re.search(r"WARNING: Fix fsi/wall/mirror walls: wall xhi was put at 0.2 when the "
+                     r"restart file was written, and is at 0.22 now", done.output)
     # half a spacing from a wall at 0.2 the lattice is at rest; water is not held there any more
     assert float(re.search(r"^RIGHT (.*)$", done.output, re.M)[1]) > 0.2
 
 
 def test_rerun(tmp_path):
-    """Forces of a fluid whose density follows from positions are those of the run, from its dump alone."""
-    scene = fluid_box(2, density="fluid summation solid summation", fluid="sound 10 artificial/visc 0.05 0")
+    """Forces of a fluid whose density follows from positions are those of the run, from its dump
+    alone."""
+    scene = fluid_box(2, density="fluid summation solid summation",
+                      fluid="sound 10 artificial/visc 0.05 0")
     scene.walls[0] = (0, 1, 0.0, "")
     text = scene.text() + "dump all all custom 10 all.dump id type mol x y vx vy\n" \
         "dump_modify all sort id format float %.17g\nrun 20\nrun 0\n" + watch(every=1) + "run 0\n"
@@ -181,14 +223,16 @@ def test_rerun(tmp_path):
 
 @pytest.mark.parametrize("dim", (2, 3))
 def test_write_data_read_data(tmp_path, dim):
-    """All that a data file knows of a fluid: positions, velocities, masses, densities. Walls stand still for it."""
+    """All that a data file knows of a fluid: positions, velocities, masses, densities. Walls stand
+    still for it."""
     scene = fluid_box(dim)
     scene.walls[0] = (0, 1, 0.0, "")
     whole = run(tmp_path, scene.text() + watch(every=40) + "run 40\nwrite_data mid.data\nrun 40\n",
                 scene_data=scene.data()).frames()
     rest = run(tmp_path, scene.setup() + "read_data mid.data\nreset_timestep 40\n" + scene.physics()
                + watch("rest.dump", 40) + "run 40\n", 2).frames("rest.dump")
-    assert np.array_equal(whole[1]["mol"], rest[0]["mol"]) and np.array_equal(whole[1]["type"], rest[0]["type"])
+    assert np.array_equal(whole[1]["mol"], rest[0]["mol"]) and np.array_equal(whole[1]["type"],
+                                                                              rest[0]["type"])
     for quantity in ("x", "v", "rho"):
         assert difference(whole[1], rest[0], quantity) < DIGITS, quantity
     assert np.abs(whole[1]["mass"] / rest[0]["mass"] - 1.0).max() < DIGITS
@@ -198,9 +242,11 @@ def test_write_data_read_data(tmp_path, dim):
 def test_clear(tmp_path):
     """A scene after another of a different dimension in the same process."""
     flat, solid = dam_gate(2), dam_gate(3)
-    text = flat.text() + "run 20\nclear\n" + solid.text().replace("scene.data", "solid.data") + watch(every=20) + "run 20\n"
+    text = flat.text() + "run 20\nclear\n" + solid.text().replace(
+        "scene.data", "solid.data") + watch(every=20) + "run 20\n"
     after = run(tmp_path, text, 2, scene_data=flat.data(), solid_data=solid.data()).frames()[-1]
-    alone = run(tmp_path / "alone", solid.text() + watch(every=20) + "run 20\n", 2, scene_data=solid.data()).frames()[-1]
+    alone = run(tmp_path / "alone", solid.text() + watch(every=20) + "run 20\n", 2,
+                scene_data=solid.data()).frames()[-1]
     assert differing(after, alone) == []
 
 
@@ -221,7 +267,8 @@ def test_atom_style_hybrid(tmp_path, order):
 def test_plate_that_moves_as_told(tmp_path):
     """fix move, setforce and rigid on the plate; fix fsi on the water only."""
     scene = dam_gate(2)
-    base = scene.text().replace("fix sph all", "group water type 1\ngroup plate type 2\nfix sph all")
+    base = scene.text().replace("fix sph all",
+                                "group water type 1\ngroup plate type 2\nfix sph all")
     start, end = run(tmp_path, base.replace("fix sph all", "fix sph water")
                      + "fix drive plate move linear -0.1 0 0\n" + watch(every=40) + "run 40\n", 2,
                      scene_data=scene.data()).frames()
@@ -230,13 +277,16 @@ def test_plate_that_moves_as_told(tmp_path):
     assert np.abs(b["x"] - a["x"] + 0.1 * 40 * scene.dt).max() < 1e-14
     assert np.abs(b["y"] - a["y"]).max() < 1e-14
 
-    start, end = run(tmp_path, base + "velocity plate set 0 0 0\nfix hold plate setforce 0 0 0\n" + watch(every=40)
+    start, end = run(tmp_path, base + "velocity plate set 0 0 0\nfix hold plate setforce 0 0 0\n"
+                     + watch(every=40)
                      + "run 40\n", 2).frames()
     a, b = start.of_types(2), end.of_types(2)
     assert np.array_equal(a.vector(), b.vector()) and not b.vector(("vx", "vy")).any()
 
-    start, end = run(tmp_path, base.replace("fix sph all", "fix sph water") + "fix body plate rigid single force 1 on on off "
-                     "torque 1 off off on\nneigh_modify exclude group plate plate\n" + watch(every=40) + "run 40\n", 2).frames()
+    start, end = run(tmp_path, base.replace("fix sph all", "fix sph water")
+                     + "fix body plate rigid single force 1 on on off "
+                     "torque 1 off off on\nneigh_modify exclude group plate plate\n"
+                     + watch(every=40) + "run 40\n", 2).frames()
     a, b = start.of_types(2).vector(("x", "y")), end.of_types(2).vector(("x", "y"))
     assert np.abs(b - a).max() > 1e-5
     apart = [np.linalg.norm(p[:, None] - p[None], axis=2) for p in (a, b)]
@@ -265,7 +315,8 @@ run 40
 """.replace("v_rho", "c_p[2]")
     done = run(tmp_path, text, 2, scene_data=scene.data())
     last, extra = done.frames()[-1], done.frames("extra.dump")[-1]
-    rows = [line.split() for line in done.output.splitlines() if line.split()[:1] == ["40"] and len(line.split()) == 7]
+    rows = [line.split() for line in done.output.splitlines() if line.split()[:1] == ["40"]
+            and len(line.split()) == 7]
     p, rho, own, mol, top, free = map(float, rows[0][1:])
     # sums over 266 particles in another order
     assert p == pytest.approx(last["p"].sum(), rel=1e-11)
@@ -273,16 +324,19 @@ run 40
     assert mol == last["mol"].sum() == (last["type"] == 2).sum()
     assert top == extra["c_p[3]"].max() > 0.0
     assert free == extra["c_surface"].sum() > 10
-    assert np.array_equal(extra["f_mean"], last["p"]) and np.array_equal(extra["c_own[1]"], last["rho"])
+    assert np.array_equal(extra["f_mean"], last["p"]) and np.array_equal(extra["c_own[1]"],
+                                                                         last["rho"])
     assert float((tmp_path / "time.txt").read_text().split()[-1]) == pytest.approx(rho, rel=1e-3)
-    bins = [list(map(float, line.split())) for line in (tmp_path / "profile.txt").read_text().splitlines()
+    bins = [list(map(float, line.split()))
+            for line in (tmp_path / "profile.txt").read_text().splitlines()
             if len(line.split()) == 5]
     bins = bins[max(k for k, row in enumerate(bins) if row[0] == 1):]  # those of the last step
     assert sum(row[2] for row in bins) == len(last)
 
 
 def test_new_particles_start_without_stress(tmp_path):
-    """Particles that are made after the fixes, in place of stressed ones, must not inherit from them."""
+    """Particles that are made after the fixes, in place of stressed ones, must not inherit from
+    them."""
     scene = dam_gate(2)
     text = scene.text() + """
 group plate type 2
@@ -300,15 +354,19 @@ create_atoms 2 region plate
 
 
 @pytest.mark.parametrize("first, again", [
-    ("sound 10 shift 0.5 tension yes density/diffusion 0.1 background 50 surface 0.9 laminar/visc extrapolate yes couple full eos tait", "sound 10"),
-    ("sound 10 artificial/visc 0.1 1", "sound 10 eos tait"), ("sound 10 laminar/visc/central", "sound 10 laminar/visc")])
+    ("sound 10 shift 0.5 tension yes density/diffusion 0.1 background 50 surface 0.9 laminar/visc "
+     "extrapolate yes couple full eos tait", "sound 10"),
+    ("sound 10 artificial/visc 0.1 1", "sound 10 eos tait"),
+    ("sound 10 laminar/visc/central", "sound 10 laminar/visc")])
 def test_pair_style_given_again(tmp_path, first, again):
     """Only the keywords of the last command count."""
     scene = fluid_box(2, fluid=again)
     text = scene.text() + watch(every=20) + "run 20\n"
-    twice = text.replace(f"pair_style fsi/fluid {again}", f"pair_style fsi/fluid {first}\npair_style fsi/fluid {again}")
+    twice = text.replace(f"pair_style fsi/fluid {again}",
+                         f"pair_style fsi/fluid {first}\npair_style fsi/fluid {again}")
     assert twice != text
-    frames = [run(tmp_path / name, deck, scene_data=scene.data()).frames()[-1] for name, deck in (("once", text), ("twice", twice))]
+    frames = [run(tmp_path / name, deck, scene_data=scene.data()).frames()[-1]
+              for name, deck in (("once", text), ("twice", twice))]
     assert differing(*frames) == []
 
 
@@ -332,16 +390,19 @@ MATERIALS = materials(water=INVISCID)
 def rows(output):
     """thermo output: numbers by step"""
     found = [line.split() for line in output.splitlines()]
-    return {int(words[0]): [float(w) for w in words[1:]] for words in found if len(words) == 7 and re.match(r"\d+$", words[0])}
+    return {int(words[0]): [float(w) for w in words[1:]] for words in found if len(words) == 7
+            and re.match(r"\d+$", words[0])}
 
 
 def first_part(folder, sph, more="timestep 1e-4", steps=30):
-    text = start() + WATER + PHYSICS.format(sph=sph, more=more) + f"restart {steps} r.*\nrun {steps}\nrun {steps}\n"
+    text = start() + WATER + PHYSICS.format(
+        sph=sph, more=more) + f"restart {steps} r.*\nrun {steps}\nrun {steps}\n"
     return run(folder, text, water_fsi=MATERIALS)
 
 
 def second_part(folder, sph, more="", steps=30, runner=run):
-    return runner(folder, start() + f"read_restart r.{steps}\n" + PHYSICS.format(sph=sph, more=more) + f"run {steps}\n", water_fsi=MATERIALS)
+    return runner(folder, start() + f"read_restart r.{steps}\n" + PHYSICS.format(sph=sph, more=more)
+                  + f"run {steps}\n", water_fsi=MATERIALS)
 
 
 MODES_OF_FLUID = {"": "", "summation": "fluid summation"}
@@ -350,39 +411,52 @@ MODES_OF_FLUID = {"": "", "summation": "fluid summation"}
 @pytest.mark.parametrize("after", MODES_OF_FLUID)
 @pytest.mark.parametrize("before", MODES_OF_FLUID)
 def test_other_keywords(tmp_path, before, after):
-    """Each mode after each other: nothing is taken for what it is not, and who changes what is told both sides."""
+    """Each mode after each other: nothing is taken for what it is not, and who changes what is told
+    both sides."""
     one, two = ("0.01 wendland 1.5 " + MODES_OF_FLUID[k] for k in (before, after))
     whole = rows(first_part(tmp_path, one).output)
     done = second_part(tmp_path, two)
     rest = rows(done.output)
     if before == after:
-        assert rest[30] == whole[30] and rest[60] == whole[60] and "when the restart file was written" not in done.output
+        assert (rest[30] == whole[30] and rest[60] == whole[60]
+                and "when the restart file was written" not in done.output)
         return
-    warnings = [line for line in done.output.splitlines() if "WARNING: Fix fsi: " in line and "when the restart file was written" in line]
-    values = [dict(zip(*[iter(w.split())] * 2)) for w in (MODES_OF_FLUID[before], MODES_OF_FLUID[after])]
+    warnings = [line for line in done.output.splitlines() if "WARNING: Fix fsi: " in line
+                and "when the restart file was written" in line]
+    values = [dict(zip(*[iter(w.split())] * 2))
+              for w in (MODES_OF_FLUID[before], MODES_OF_FLUID[after])]
     changed = {key for v in values for key in v if values[0].get(key) != values[1].get(key)}
-    assert len(warnings) == len(changed) and all(any(f"Fix fsi: {key} was " in w for w in warnings) for key in changed), warnings
-    # the column of water is 0.2 m high and falls freely: pressures of at most its weight and what its sound makes of 3 ms of falling,
-    # densities within the 2 % of the number density at its surface, where summation lacks half of the kernel
+    assert len(warnings) == len(changed) and all(any(f"Fix fsi: {key} was " in w for w in warnings)
+                                                 for key in changed), warnings
+    # the column of water is 0.2 m high and falls freely: pressures of at most its weight and what
+    # its sound makes of 3 ms of falling, densities within the 2 % of the number density at its
+    # surface, where summation lacks half of the kernel
     for step, row in rest.items():
         low, density_low, high, density_high = row[2:]
         assert np.isfinite(row).all() and low >= 0.0 and high < 8000.0, (step, row)
-        assert (density_low > 400.0 if "summation" in (before, after) else density_low > 950.0) and density_high < 1050.0, (step, row)
+        assert (density_low > 400.0 if "summation" in (before, after) else density_low
+                > 950.0) and density_high < 1050.0, (step, row)
 
 
 def test_sound_of_the_material(tmp_path):
     """The pair style names no speed of sound: its fluid has one."""
-    fluid, physics = MATERIALS.replace("rho 1000", "rho 1000 sound 20"), PHYSICS.format(sph="0.01 wendland 1.5", more="timestep 1e-4")
-    whole = run(tmp_path, start() + WATER.replace("sound 20 ", "") + physics + "restart 30 r.*\nrun 30\nrun 30\n", water_fsi=fluid)
+    fluid, physics = MATERIALS.replace("rho 1000", "rho 1000 sound 20"), PHYSICS.format(
+        sph="0.01 wendland 1.5", more="timestep 1e-4")
+    whole = run(tmp_path, start() + WATER.replace("sound 20 ", "") + physics
+                + "restart 30 r.*\nrun 30\nrun 30\n", water_fsi=fluid)
     rest = run(tmp_path, start() + "read_restart r.30\n" + physics + "run 30\n", water_fsi=fluid)
     assert rows(rest.output)[60] == rows(whole.output)[60]
 
 
 @pytest.mark.parametrize("sph, message", [
-    ("0.02 wendland 1.5", r"ERROR: Fix fsi: particle spacing was 0\.01 when the restart file was written, and is 0\.02 now"),
-    ("0.01 cubic 1.5", r"WARNING: Fix fsi: kernel was wendland when the restart file was written, and is cubic now"),
-    ("0.01 wendland 1.3", r"WARNING: Fix fsi: smoothing length over spacing was 1\.5 when .*, and is 1\.3 now"),
-    ("0.01 wendland 1.3 fluid summation", r"ERROR: Fix fsi: density mode summation must keep kernel and smoothing length")])
+    ("0.02 wendland 1.5", r"ERROR: Fix fsi: particle spacing was 0\.01 when the restart file was "
+     r"written, and is 0\.02 now"),
+    ("0.01 cubic 1.5",
+     r"WARNING: Fix fsi: kernel was wendland when the restart file was written, and is cubic now"),
+    ("0.01 wendland 1.3",
+     r"WARNING: Fix fsi: smoothing length over spacing was 1\.5 when .*, and is 1\.3 now"),
+    ("0.01 wendland 1.3 fluid summation",
+     r"ERROR: Fix fsi: density mode summation must keep kernel and smoothing length")])
 def test_other_discretization(tmp_path, sph, message):
     first_part(tmp_path, "0.01 wendland 1.5")
     done = second_part(tmp_path, sph, runner=lammps)
@@ -390,7 +464,8 @@ def test_other_discretization(tmp_path, sph, message):
     assert (done.status != 0) == message.startswith("ERROR")
 
 
-@pytest.mark.parametrize("before", ("timestep 1e-4", "fix 4 all fsi/dt 10 max 1e-4", "timestep 1e-4\nfix 4 all fsi/dt 1"))
+@pytest.mark.parametrize("before", ("timestep 1e-4", "fix 4 all fsi/dt 10 max 1e-4",
+                                    "timestep 1e-4\nfix 4 all fsi/dt 1"))
 @pytest.mark.parametrize("after", ("", "timestep 1e-4", "timestep 2e-5"))
 def test_time_goes_on(tmp_path, before, after):
     """With and without fix fsi/dt and timestep command; bit for bit where the step is the same."""
@@ -399,7 +474,8 @@ def test_time_goes_on(tmp_path, before, after):
     rest = rows(second_part(tmp_path, "0.01 wendland 1.5", f"{adaptive}\n{after}").output)
     assert rest[30][0] == pytest.approx(whole[30][0], rel=1e-14) and whole[30][0] > 1e-4
     if adaptive or after != "timestep 2e-5":
-        assert [row[0] for row in rest.values()] == pytest.approx([whole[step][0] for step in rest], rel=1e-14)
+        assert [row[0] for row in rest.values()] == pytest.approx([whole[step][0] for step in rest],
+                                                                  rel=1e-14)
     else:
         assert rest[60][0] == pytest.approx(whole[30][0] + 30 * 2e-5, rel=1e-14)
     if after == "":
@@ -407,14 +483,17 @@ def test_time_goes_on(tmp_path, before, after):
 
 
 def test_fixes_of_other_names(tmp_path):
-    """Who gives a fix another ID loses what the file has of it: an error where particles' state is lost, a warning elsewhere."""
+    """Who gives a fix another ID loses what the file has of it: an error where particles' state is
+    lost, a warning elsewhere."""
     scene = dam_gate(2)
     run(tmp_path, scene.text() + "run 5\nwrite_restart mid.data\n", scene_data=scene.data())
     text = resume(scene, "mid.data") + "run 0\n"
     done = lammps(tmp_path, text.replace("fix stress", "fix other"))
-    assert done.status != 0 and any("Fix other (style fsi/stress) takes nothing from the restart file, in which it had the ID stress" in e for e in done.errors)
+    assert done.status != 0 and any("Fix other (style fsi/stress) takes nothing from the restart "
+                                    "file, in which it had the ID stress" in e for e in done.errors)
     done = run(tmp_path, text.replace("fix walls", "fix others"))
-    assert "WARNING: Fix others (style fsi/wall/mirror) takes nothing from the restart file, in which it had the ID walls" in done.output
+    assert ("WARNING: Fix others (style fsi/wall/mirror) takes nothing from the restart file, in "
+            "which it had the ID walls" in done.output)
 
 
 STRESS_BOX = box("0 0.2 0 0.2", 0.01, boundary="p p p", metal="") + """pair_style fsi/solid artificial/visc 0.1 0 {first}
@@ -444,8 +523,10 @@ METAL = materials(metal="solid rho 1000 young 2e6 poisson 0.3 yield 1e3 hardenin
 
 
 @pytest.mark.parametrize("before, after, told", [
-    ("plane strain", "plastic", "plastic was no .*, and is yes now"), ("plastic", "plane strain", "plastic was yes .*, and is no now"),
-    ("plastic", "plastic", None), ("", "plane stress", "ERROR: Fix fsi/stress: plane was strain .*, and is stress now")])
+    ("plane strain", "plastic", "plastic was no .*, and is yes now"),
+    ("plastic", "plane strain", "plastic was yes .*, and is no now"),
+    ("plastic", "plastic", None),
+    ("", "plane stress", "ERROR: Fix fsi/stress: plane was strain .*, and is stress now")])
 def test_other_stress(tmp_path, before, after, told):
     """The stress goes on; what is new begins with 0."""
     text = STRESS_BOX.format(first="", stress=before) + """compute c all fsi/atom vonmises
@@ -456,13 +537,15 @@ print "VONMISES $(c_m:%.17g)"
     first = run(tmp_path, text, metal_fsi=METAL)
     mises = float(re.search(r"^VONMISES (.*)$", first.output, re.M)[1])
     done = lammps(tmp_path, STRESS_AGAIN.format(pair="", stress=after))
-    assert mises > 10.0 and (told is None) == ("when the restart file was written" not in done.output)
+    assert mises > 10.0 and (told is None) == (
+        "when the restart file was written" not in done.output)
     if told:
         assert re.search(told, done.output)
     if told and told.startswith("ERROR"):
         assert done.status != 0
         return
-    row = next(words for words in map(str.split, done.output.splitlines()) if words[:1] == ["20"] and len(words) == 4)
+    row = next(words for words in map(str.split, done.output.splitlines()) if words[:1] == ["20"]
+               and len(words) == 4)
     # what has been taken belongs to the ledger, which begins here
     assert float(row[1]) == pytest.approx(mises, rel=1e-12) and float(row[2]) == 0.0
 
@@ -472,9 +555,11 @@ def test_hourglass_control_comes_and_goes(tmp_path, first, again):
     """With a restart: the stress is the same, and forces of control begin with 0."""
     run(tmp_path, STRESS_BOX.format(first=first, stress=""), metal_fsi=METAL)
     rest = []
-    for pair in ("", f"pair_style fsi/solid artificial/visc 0.1 0 {again}\npair_coeff * * metal.fsi metal"):
+    for pair in ("", f"pair_style fsi/solid artificial/visc 0.1 0 {again}\n"
+                 "pair_coeff * * metal.fsi metal"):
         done = run(tmp_path, STRESS_AGAIN.format(pair=pair, stress=""))
-        rest.append(next(words for words in map(str.split, done.output.splitlines()) if words[:1] == ["20"] and len(words) == 4))
+        rest.append(next(words for words in map(str.split, done.output.splitlines()) if words[:1]
+                         == ["20"] and len(words) == 4))
     assert rest[0] == rest[1] and float(rest[0][3]) > 0.0
 
 
@@ -484,7 +569,8 @@ def test_bonds_do_not_change(tmp_path):
     run(tmp_path, scene.text() + "run 5\nwrite_restart mid.data\n", scene_data=scene.data())
     again = replace(scene, solid="gradient linear")
     done = lammps(tmp_path, again.setup() + "read_restart mid.data\n" + again.physics() + "run 0\n")
-    assert done.status != 0 and any("gradient linear volumes corrected: the bonds of its bodies were made with gradient quadratic" in e for e in done.errors)
+    assert done.status != 0 and any("gradient linear volumes corrected: the bonds of its bodies "
+                                    "were made with gradient quadratic" in e for e in done.errors)
 
 
 def test_file_of_another_version(tmp_path):
@@ -492,11 +578,13 @@ def test_file_of_another_version(tmp_path):
     scene = fluid_box(2)
     run(tmp_path, scene.text() + "run 5\nwrite_restart mid.data\n", scene_data=scene.data())
     whole = (tmp_path / "mid.data").read_bytes()
-    for name in (b"FSI 2 fix fsi\n", b"FSI 2 pair_style fsi/fluid\n", b"FSI 2 fix fsi/wall/mirror\n"):
+    for name in (b"FSI 2 fix fsi\n", b"FSI 2 pair_style fsi/fluid\n",
+                 b"FSI 2 fix fsi/wall/mirror\n"):
         assert whole.count(name) == 1
         (tmp_path / "mid.data").write_bytes(whole.replace(name, name.replace(b"FSI 2", b"FSI 1")))
         done = lammps(tmp_path, resume(scene, "mid.data") + "run 0\n")
-        assert done.status != 0 and any("written by another version of the FSI package" in e for e in done.errors)
+        assert done.status != 0 and any("written by another version of the FSI package" in e
+                                        for e in done.errors)
 
 
 RIGID = box("-0.1 0.4 -0.1 0.4", 0.01, water="0 0.1 0 0.1", body="0.2 0.25 0.2 0.25") + """pair_style fsi/fluid sound 20
@@ -517,14 +605,20 @@ thermo_modify format float %.17g
 
 def test_fixes_that_keep_the_time_step(tmp_path):
     """fix rigid takes the restored step, not that of a timestep command before."""
-    whole = run(tmp_path, RIGID + RIGID_FIXES + "timestep 5e-5\nrun 50\nwrite_restart mid\nrun 50\n", water_fsi=materials(water=INVISCID, tank=WALL))
-    rest = run(tmp_path, "read_restart mid\ngroup water type 1\ngroup body type 2\ntimestep 1e-4\n" + RIGID_FIXES + "run 50\n")
-    place = [float(next(w for w in reversed(list(map(str.split, r.output.splitlines()))) if w[:1] == ["100"] and len(w) == 2)[1]) for r in (whole, rest)]
-    assert place[0] == pytest.approx(0.225 + 100 * 5e-5, abs=1e-9) and place[1] == pytest.approx(place[0], rel=1e-13)
+    whole = run(tmp_path,
+                RIGID + RIGID_FIXES + "timestep 5e-5\nrun 50\nwrite_restart mid\nrun 50\n",
+                water_fsi=materials(water=INVISCID, tank=WALL))
+    rest = run(tmp_path, "read_restart mid\ngroup water type 1\ngroup body type 2\ntimestep 1e-4\n"
+               + RIGID_FIXES + "run 50\n")
+    place = [float(next(w for w in reversed(list(map(str.split, r.output.splitlines()))) if w[:1]
+                        == ["100"] and len(w) == 2)[1]) for r in (whole, rest)]
+    assert place[0] == pytest.approx(0.225 + 100 * 5e-5,
+                                     abs=1e-9) and place[1] == pytest.approx(place[0], rel=1e-13)
 
 
 def test_ledger_goes_on(tmp_path):
-    """What the terms have taken is in the file: the sum of the restarted run is that of the uninterrupted one."""
+    """What the terms have taken is in the file: the sum of the restarted run is that of the
+    uninterrupted one."""
     more = "compute e all fsi/energy\nthermo_style custom step time c_e c_e[5] c_e[9] dt time"
     whole = rows(first_part(tmp_path, "0.01 wendland 1.5", "timestep 1e-4\n" + more).output)
     rest = rows(second_part(tmp_path, "0.01 wendland 1.5", more).output)
@@ -563,7 +657,8 @@ run 2
 @pytest.mark.parametrize("text", (WALLS_GONE, FLUID_GONE), ids=("walls", "fluid"))
 def test_effects_that_are_gone(tmp_path, text):
     """Arrays of walls and fluids are gone with them, whatever the number of atoms becomes."""
-    done = run(tmp_path, text, water_fsi=materials(water=INVISCID, plate="solid rho 1000 young 2e6 poisson 0.4"))
+    done = run(tmp_path, text,
+               water_fsi=materials(water=INVISCID, plate="solid rho 1000 young 2e6 poisson 0.4"))
     assert "Loop time" in done.output
 
 
@@ -571,19 +666,24 @@ BEFORE_A_RUN = start() + WATER + """fix 1 all fsi 0.01 wendland 1.5
 fix 2 all gravity 9.81 vector 0 -1 0
 timestep 1e-5
 """
-OUTPUTS = {"atom": "compute c all fsi/atom p", "surface": "compute c all fsi/surface/atom", "energy": "compute c all fsi/energy",
+OUTPUTS = {"atom": "compute c all fsi/atom p", "surface": "compute c all fsi/surface/atom",
+           "energy": "compute c all fsi/energy",
            "probe": "compute c all fsi/probe p point 0.1 0.1 0", "force": "compute c all fsi/force"}
 
 
 @pytest.mark.parametrize("when", ("before", "created"))
 @pytest.mark.parametrize("kind", OUTPUTS)
 def test_computes_between_runs(tmp_path, kind, when):
-    """After fsi/set and before a run, or after atoms are created: an error that says what is needed."""
-    show = {"atom": "write_dump all custom a.dump id c_c", "surface": "write_dump all custom a.dump id c_c", "energy": 'print "$(c_c)"',
+    """After fsi/set and before a run, or after atoms are created: an error that says what is
+    needed."""
+    show = {"atom": "write_dump all custom a.dump id c_c",
+            "surface": "write_dump all custom a.dump id c_c", "energy": 'print "$(c_c)"',
             "probe": 'print "$(c_c)"', "force": 'print "$(c_c[1])"'}[kind]
-    start = "fsi/set all hydrostatic 0.1\n" if when == "before" else "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box\n"
+    start = ("fsi/set all hydrostatic 0.1\n" if when == "before"
+             else "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box\n")
     done = lammps(tmp_path, f"{BEFORE_A_RUN}{OUTPUTS[kind]}\n{start}{show}\n", water_fsi=MATERIALS)
-    assert done.status != 0 and any("needs a run before it" in e for e in done.errors), done.output[-1500:]
+    assert done.status != 0 and any("needs a run before it" in e
+                                    for e in done.errors), done.output[-1500:]
 
 
 def test_fixes_before_a_run(tmp_path):

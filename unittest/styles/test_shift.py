@@ -1,4 +1,5 @@
-"""Particle shifting against sums written a second time in numpy, on clouds with free surfaces, walls and a solid."""
+"""Particle shifting against sums written a second time in numpy, on clouds with free surfaces,
+walls and a solid."""
 
 from itertools import product
 
@@ -12,7 +13,8 @@ BOTH = pytest.mark.parametrize("n", [(12, 11), (7, 6, 6)], ids=["2D", "3D"])
 
 
 def expected(x, volume, moves, kernel, dx, dim, walls, fills):
-    """Displacements (n, dim) of one step; walls: axes with a mirror at 0; fills: there is no free surface."""
+    """Displacements (n, dim) of one step; walls: axes with a mirror at 0; fills: there is no free
+    surface."""
     x = x[:, :dim]
     sums, normal, divergence = np.zeros_like(x), np.zeros_like(x), np.zeros(len(x))
     for reflected in product((False, True), repeat=len(walls)):
@@ -49,7 +51,8 @@ def expected(x, volume, moves, kernel, dx, dim, walls, fills):
 
 
 def change_of_velocity(x, v, volume, fluid, kernel, dim, walls, step):
-    """step.grad v of fluid neighbors and their images, by least squares with the weights -V_j g_ij, and the determinant of its matrix."""
+    """step.grad v of fluid neighbors and their images, by least squares with the weights -V_j g_ij,
+    and the determinant of its matrix."""
     x, v, step = x[fluid, :dim], v[fluid, :dim], step[fluid]
     matrix, slopes = np.zeros((2, len(x), dim, dim))
     for reflected in product((False, True), repeat=len(walls)):
@@ -70,7 +73,8 @@ def change_of_velocity(x, v, volume, fluid, kernel, dim, walls, step):
 
 
 def one_step(n, kernel, flow, background=0):
-    """Two runs of one step, with and without: the fluid's, walls', volumes', kernel's arrays, and what is had by each."""
+    """Two runs of one step, with and without: the fluid's, walls', volumes', kernel's arrays, and
+    what is had by each."""
     dim, dx = len(n), 0.1
     x, v = cloud(n, dx, jitter=0.3, vmax=0.1)
     middle = np.argsort(np.linalg.norm(x - x.mean(0), axis=1))[:7]
@@ -78,29 +82,36 @@ def one_step(n, kernel, flow, background=0):
     v = flow(x, v)
     walls = [1, 2][:dim - 1]
     type_ = np.where(x[:, 0] > x[:, 0].max() - 2 * dx, 2, 1)
-    commands = ["fix walls all fsi/wall/mirror " + " ".join(f"{'xyz'[a]}lo 0 guard 0" for a in walls)]
+    commands = ["fix walls all fsi/wall/mirror "
+                + " ".join(f"{'xyz'[a]}lo 0 guard 0" for a in walls)]
     got = {}
     for shift in (0, C):
-        with Scene(x, v, dim=dim, dx=dx, kernel=kernel, hdx=1.2, type=type_, materials=(WATER, RUBBER), dt=DT,
-                   fluid=f"sound {SOUND} tension yes background {background} shift {shift}", commands=commands) as s:
+        with Scene(x, v, dim=dim, dx=dx, kernel=kernel, hdx=1.2, type=type_,
+                   materials=(WATER, RUBBER), dt=DT,
+                   fluid=f"sound {SOUND} tension yes background {background} shift {shift}",
+                   commands=commands) as s:
             s.run()
             volume = s.get("rmass") / s.get("rho")
             s.run(1)
             got[shift] = {name: s.get(name) for name in ("x", "v", "rho")}
             support = s.kernel
     difference = {name: got[C][name] - got[0][name] for name in got[0]}
-    return x, v, volume, type_ == 1, support, walls, {name: d[:, :dim] if d.ndim == 2 else d for name, d in difference.items()}
+    return x, v, volume, type_ == 1, support, walls, {name: d[:, :dim] if d.ndim == 2 else d
+                                                      for name, d in difference.items()}
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("background", [0, 5])
 @BOTH
 def test_displacement(n, kernel, background):
-    """Positions differ by the displacement, velocities in a full box by what the flow has there, densities not at all."""
-    x, v, volume, fluid, support, walls, difference = one_step(n, kernel, lambda x, v: v, background)
+    """Positions differ by the displacement, velocities in a full box by what the flow has there,
+    densities not at all."""
+    x, v, volume, fluid, support, walls, difference = one_step(n, kernel, lambda x, v: v,
+                                                               background)
     want, missing, bounded = expected(x, volume, fluid, support, 0.1, len(n), walls, background > 0)
     # worth comparing: inside, on surfaces and in corners; bounded and not
-    assert (missing > 1).any() and (missing < 0.04).any() and ((missing > 0.16) & (missing < 0.9)).any()
+    assert (missing > 1).any() and (missing < 0.04).any() and ((missing > 0.16)
+                                                               & (missing < 0.9)).any()
     assert bounded.any() and not bounded.all()
     # coordinates of order 1 and displacements of 1e-3: round-off of the difference
     assert np.abs(difference["x"] - want).max() < 1e-13
@@ -114,10 +125,13 @@ def test_displacement(n, kernel, background):
 @pytest.mark.parametrize("shear", [0, 1])
 @BOTH
 def test_velocity_is_that_of_the_flow(n, shear):
-    """In a flow whose velocity is linear in place particles have exactly that after the step, at surfaces and solids, too; at walls that slip if there is no shear."""
-    slope = np.array([[0.3, -0.2, 0.1], [0.5, 0.1, -0.4], [-0.3, 0.2, -0.4]]) * np.where(np.eye(3), 1, shear)
+    """In a flow whose velocity is linear in place particles have exactly that after the step, at
+    surfaces and solids, too; at walls that slip if there is no shear."""
+    slope = np.array([[0.3, -0.2, 0.1], [0.5, 0.1, -0.4], [-0.3, 0.2, -0.4]]) * np.where(
+        np.eye(3), 1, shear)
     slope[:, len(n):] = slope[len(n):] = 0.0
-    x, v, volume, fluid, support, walls, difference = one_step(n, "quintic", lambda x, v: x @ slope.T, background=5)
+    x, v, volume, fluid, support, walls, difference = one_step(n, "quintic", lambda x, v: x
+                                                               @ slope.T, background=5)
     _, det = change_of_velocity(x, v, volume, fluid, support, len(n), walls, difference["x"])
     there = (det > 0.1) & ((x[fluid][:, walls] > support.cut).all(1) | (not shear))
     assert there.sum() > (10 if shear else 0.6 * fluid.sum())
@@ -129,12 +143,14 @@ def test_velocity_is_that_of_the_flow(n, shear):
 @pytest.mark.parametrize("every", [3, 10])
 @BOTH
 def test_every_few_steps(n, every):
-    """Nothing in steps between; then what one of them would do, so many times, but N C c dt at most h/2: six times here."""
+    """Nothing in steps between; then what one of them would do, so many times, but N C c dt at most
+    h/2: six times here."""
     dim, dx = len(n), 0.1
     x, v = cloud(n, dx, jitter=0.3, vmax=0.1)
     got = {}
     for shift in ("", f"shift {C} shift/every {every}"):
-        with Scene(x, v, dim=dim, dx=dx, kernel="quintic", hdx=1.2, dt=DT, fluid=f"sound {SOUND} tension yes {shift}", commands=[]) as s:
+        with Scene(x, v, dim=dim, dx=dx, kernel="quintic", hdx=1.2, dt=DT,
+                   fluid=f"sound {SOUND} tension yes {shift}", commands=[]) as s:
             s.run(every - 1)
             before, volume, support = s.get("x"), s.get("rmass") / s.get("rho"), s.kernel
             s.run(1)
@@ -149,7 +165,8 @@ def test_every_few_steps(n, every):
 
 
 def test_gaps_close_where_there_is_no_surface():
-    """A hole of four particles in a lattice that fills its box: with a background pressure its rim moves into it."""
+    """A hole of four particles in a lattice that fills its box: with a background pressure its rim
+    moves into it."""
     n, dx = (20, 20), 0.1
     x = lattice(n, dx)
     hole = (np.abs(x[:, :2] - 1.0) < dx).all(1)
@@ -157,39 +174,49 @@ def test_gaps_close_where_there_is_no_surface():
     inward = {}
     for background in (0, 5):
         with Scene(x, dx=dx, boundary="p p p", box=((0, 0, 0), (2, 2, 2)), dt=DT,
-                   fluid=f"sound {SOUND} tension yes background {background} shift {C}", commands=[]) as s:
+                   fluid=f"sound {SOUND} tension yes background {background} shift {C}",
+                   commands=[]) as s:
             s.run(1)
             rim = np.linalg.norm(x[:, :2] - 1.0, axis=1) < 2.2 * dx
-            inward[background] = -((s.get("x") - x)[:, :2] * (x[:, :2] - 1.0)).sum(1)[rim] / np.linalg.norm(x[:, :2] - 1.0, axis=1)[rim]
-    assert inward[5].min() > 0.02 * C * SOUND * DT and np.abs(inward[0]).max() < 0.3 * inward[5].min()
+            inward[background] = -((s.get("x") - x)[:, :2] * (x[:, :2] - 1.0)).sum(
+                1)[rim] / np.linalg.norm(x[:, :2] - 1.0, axis=1)[rim]
+    assert inward[5].min() > 0.02 * C * SOUND * DT and np.abs(
+        inward[0]).max() < 0.3 * inward[5].min()
 
 
 @BOTH
 def test_lattice_stays(n):
-    """Nothing moves on a lattice: walls and the solid count as full, and from a plane surface nothing is pulled off."""
+    """Nothing moves on a lattice: walls and the solid count as full, and from a plane surface
+    nothing is pulled off."""
     dim, dx = len(n), 0.1
     x = lattice(n, dx)
     type_ = np.where(x[:, 0] > x[:, 0].max() - 3.5 * dx, 2, 1)
     walls = " ".join(f"{a}lo 0 {a}hi {m * dx}" for a, m in zip("xyz", n))
     walls = walls.replace(f"xhi {n[0] * dx}", "").replace(f"yhi {n[1] * dx}", "")
-    with Scene(x, dim=dim, dx=dx, type=type_, materials=(WATER, RUBBER), dt=DT, fluid=f"sound {SOUND} shift {C}",
+    with Scene(x, dim=dim, dx=dx, type=type_, materials=(WATER, RUBBER), dt=DT,
+               fluid=f"sound {SOUND} shift {C}",
                commands=[f"fix walls all fsi/wall/mirror {walls}"]) as s:
         s.run(50)
         x1 = s.get("x")
-    # the solid has free sides; next to those, in the corner with the surface, the lattice is not complete
-    inner = (type_ == 1) & ((x[:, 0] < x[type_ == 2, 0].min() - 3 * dx) | (x[:, 1] < x[:, 1].max() - 4 * dx))
+    # the solid has free sides; next to those, in the corner with the surface, the lattice is not
+    # complete
+    inner = (type_ == 1) & ((x[:, 0] < x[type_ == 2, 0].min() - 3 * dx)
+                            | (x[:, 1] < x[:, 1].max() - 4 * dx))
     assert np.abs(x1 - x)[inner].max() < 1e-12
 
 
 @pytest.mark.parametrize("n", [(14, 8), (12, 7, 7)], ids=["2D", "3D"])
 def test_lattice_stays_between_walls_of_particles(n):
-    """The same in a box that the fluid fills, to what the factor of walls leaves of the fourth power at two spacings: 1e-5 of the sum."""
+    """The same in a box that the fluid fills, to what the factor of walls leaves of the fourth
+    power at two spacings: 1e-5 of the sum."""
     dim, dx = len(n), 0.1
     x = lattice(n, dx)
     wall = np.abs(x[:, 0] - n[0] * dx / 2) > (n[0] / 2 - 3) * dx
     box = (-1, 0, 0), (n[0] * dx + 1, n[1] * dx, n[-1] * dx)
-    with Scene(x, dim=dim, dx=dx, boundary="f p p", box=box, type=1 + wall, materials=(WATER, WALL), held=wall, dt=DT,
-               fluid=f"sound {SOUND} background 5 tension yes shift {C}", commands=["fix wall held fsi/wall/particle"]) as s:
+    with Scene(x, dim=dim, dx=dx, boundary="f p p", box=box, type=1 + wall, materials=(WATER, WALL),
+               held=wall, dt=DT,
+               fluid=f"sound {SOUND} background 5 tension yes shift {C}",
+               commands=["fix wall held fsi/wall/particle"]) as s:
         moved = np.abs(s.run(50).get("x") - x).max() / dx
     print(f"after 50 steps particles have moved by at most {moved:.1e} spacings")
     assert moved < 1e-4
@@ -202,7 +229,8 @@ def test_evens_out():
     spread = []
     for shift in (0, C):
         with Scene(x, dx=dx, boundary="p p p", box=((0, 0, 0), (2, 2, 2)), dt=DT,
-                   fluid=f"sound {SOUND} tension yes shift {shift}", commands=["compute psi all fsi/atom psi"]) as s:
+                   fluid=f"sound {SOUND} tension yes shift {shift}",
+                   commands=["compute psi all fsi/atom psi"]) as s:
             s.run(200)
             spread.append(np.std(s.compute("psi", columns=False)) / s.kernel.lattice_sum(dx, 2))
     print(f"spread of the number density: {spread[0]:.4f} without, {spread[1]:.4f} with shifting")
@@ -213,7 +241,8 @@ def test_evens_out():
 @pytest.mark.slow
 @pytest.mark.parametrize("n", [(20, 20), (14, 8, 8)], ids=["2D", "3D"])
 def test_density_follows_between_open_ends(n):
-    """There rho - m psi is a constant of each particle that moves and is shifted; without them shifting alone leaves rho."""
+    """There rho - m psi is a constant of each particle that moves and is shifted; without them
+    shifting alone leaves rho."""
     dx, dim = 0.1, len(n)
     x, v = cloud(n, dx, jitter=0.3, vmax=0.02)
     size = [n[k] * dx if k < dim else 2.0 for k in range(3)]
@@ -223,36 +252,48 @@ def test_density_follows_between_open_ends(n):
         if ends:
             low[0], high[0] = -0.6, size[0] + 0.6
         commands = ["compute psi all fsi/atom psi"]
-        commands += ["fix i all fsi/inlet xlo 0 velocity 0 0 0", f"fix o all fsi/outlet xhi {size[0]}"] if ends else []
-        with Scene(x, v, dim=dim, dx=dx, boundary="f p p" if ends else "p p p", box=(low, high), dt=0.1 * DT,
-                   fluid=f"sound {SOUND} tension yes background 5 shift {C}", commands=commands) as s:
+        commands += ["fix i all fsi/inlet xlo 0 velocity 0 0 0",
+                     f"fix o all fsi/outlet xhi {size[0]}"] if ends else []
+        with Scene(x, v, dim=dim, dx=dx, boundary="f p p" if ends else "p p p", box=(low, high),
+                   dt=0.1 * DT,
+                   fluid=f"sound {SOUND} tension yes background 5 shift {C}",
+                   commands=commands) as s:
             s.run()
-            value = lambda: {i: row for i, *row in zip(s.get("id"), s.get("x")[:, 0], s.get("rho"), s.get("rmass") * s.compute("psi", columns=False))}
+            value = lambda: {i: row for i, *row in zip(s.get("id"), s.get("x")[:, 0],
+                                                       s.get("rho"), s.get("rmass")
+                                                       * s.compute("psi", columns=False))}
             before = value()
             s.run(250)
             after = value()
-        change = np.array([np.subtract(after[i], before[i])[1:] for i in before if i in after and abs(before[i][0] - size[0] / 2) < size[0] / 2 - 4 * dx])
+        change = np.array([np.subtract(after[i], before[i])[1:] for i in before if i in after
+                           and abs(before[i][0] - size[0] / 2) < size[0] / 2 - 4 * dx])
         assert len(change) > 100
         lag[ends] = np.abs(change[:, 0] - change[:, 1]).max() / np.ptp(change[:, 1])
-    print(f"rho - m psi has changed by {lag[True]:.4f} of the range in which m psi has, without open ends by {lag[False]:.3f}")
-    # the displacement of the last step is not in it yet, and gradients of W are those of the middle of a step
+    print(f"rho - m psi has changed by {lag[True]:.4f} of the range in which m psi has, without "
+          f"open ends by {lag[False]:.3f}")
+    # the displacement of the last step is not in it yet, and gradients of W are those of the middle
+    # of a step
     assert lag[True] < 0.02 and lag[False] > 0.2
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("kernel, hdx", [("quintic", 1.0), ("quintic", 0.94), ("wendland", 1.5), ("wendland", 1.8), ("cubic", 1.3)])
+@pytest.mark.parametrize("kernel, hdx", [("quintic", 1.0), ("quintic", 0.94), ("wendland", 1.5),
+                                         ("wendland", 1.8), ("cubic", 1.3)])
 def test_bound_is_below_what_overshoots(kernel, hdx, dim):
-    """Plane waves of displacements on a lattice: N C c dt = L turns their part along an eigenvector into 1 - L h lambda of it, which grows from
-    L = 2/(h lambda) on. The bound, h/2, has to be less for all wave vectors, kernels as they are recommended, in 2D and 3D."""
+    """Plane waves of displacements on a lattice: N C c dt = L turns their part along an eigenvector
+    into 1 - L h lambda of it, which grows from L = 2/(h lambda) on. The bound, h/2, has to be less
+    for all wave vectors, kernels as they are recommended, in 2D and 3D."""
     k = Kernel(kernel, dim, hdx)
     x = lattice([9] * dim, 1.0, center=True)[:, :dim]
     r = np.linalg.norm(x, axis=1)
     x, r = x[(r > 0) & (r < k.cut)], r[(r > 0) & (r < k.cut)]
     pull = lambda s: k.g(s) * (1 + 0.2 * (k.W(s) / k.W(1.0))**4)
     slope = (pull(r * (1 + 1e-6)) - pull(r * (1 - 1e-6))) / (2e-6 * r)
-    gradient = pull(r)[:, None, None] * np.eye(dim) + (slope / r)[:, None, None] * x[:, :, None] * x[:, None, :]
-    largest = max(np.linalg.eigvalsh(np.einsum("jab,j->ab", gradient, 1 - np.cos(x @ np.array(wave))))[-1]
-                  for wave in product(np.linspace(0, np.pi, 13), repeat=dim))
+    gradient = (pull(r)[:, None, None] * np.eye(dim) + (slope / r)[:, None, None] * x[:, :, None]
+                * x[:, None, :])
+    largest = max(
+        np.linalg.eigvalsh(np.einsum("jab,j->ab", gradient, 1 - np.cos(x @ np.array(wave))))[-1]
+        for wave in product(np.linspace(0, np.pi, 13), repeat=dim))
     grows_from = 2 / (hdx**2 * largest)
     print(f"{kernel} {hdx} in {dim}D: displacements grow from N C c dt = {grows_from:.2f} h on")
     assert 0.5 < grows_from < 0.9

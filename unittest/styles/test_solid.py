@@ -26,8 +26,8 @@ def rotation(w, dt):
 
 
 def step(A, dt, plane, dim):
-    """(p, S) after one step from a stress-free state with the velocity gradient A: DESIGN 3.7 with the strain turned by
-    half of the spin, and d rho/dt = -rho tr A, centered"""
+    """(p, S) after one step from a stress-free state with the velocity gradient A: DESIGN 3.7 with
+    the strain turned by half of the spin, and d rho/dt = -rho tr A, centered"""
     e, w = (A + A.T) / 2, (A - A.T) / 2
     identity = np.diag([1, 1, dim == 3]).astype(float)
     dev = 2 * G * dt * (e - np.trace(e) / (2 if plane == "stress" else 3) * identity)
@@ -49,14 +49,16 @@ def linear(dim, seed=1):
 
 def block(A, dim, dt, gradient="corrected", plane="strain", jitter=0.2, n=None, **more):
     x, _ = cloud(n or [6] * dim, 0.1, jitter=jitter)
-    return Scene(x, x @ A.T, dim=dim, dx=0.1, dt=dt, materials=(MATERIAL,), solid=f"gradient {gradient}",
+    return Scene(x, x @ A.T, dim=dim, dx=0.1, dt=dt, materials=(MATERIAL,),
+                 solid=f"gradient {gradient}",
                  stress=f"plane {plane}" if dim == 2 else "", **more)
 
 
 @PLANES
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_linear_field(dim, plane, kernel):
-    """The corrected gradient is exact for v = A x in every particle of a shaken block, corners too."""
+    """The corrected gradient is exact for v = A x in every particle of a shaken block, corners
+    too."""
     A, dt = linear(dim), 0.05
     with block(A, dim, dt, plane=plane, kernel=kernel) as s:
         sigma = s.run(1).sigma
@@ -66,13 +68,15 @@ def test_linear_field(dim, plane, kernel):
         close(inplane(sigma, dim), np.broadcast_to(expected, (s.n, dim, dim)), 1e-10)
         szz = sigma[:, 2, 2]
         if dim == 2:
-            close(szz if plane == "strain" else szz + 1, (-p - S[0, 0] - S[1, 1]) if plane == "strain" else 1, 1e-10)
+            close(szz if plane == "strain" else szz + 1, (-p - S[0, 0] - S[1, 1]) if plane
+                  == "strain" else 1, 1e-10)
 
 
 @DIMS
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_plain_gradient(dim, kernel):
-    """Plain sums equal those of numpy; inside a lattice they miss A by the lattice's own moment only."""
+    """Plain sums equal those of numpy; inside a lattice they miss A by the lattice's own moment
+    only."""
     A, dt = linear(dim), 1e-4
     for jitter in (0.2, 0.0):
         with block(A, dim, dt, "plain", jitter=jitter, n=[9] * dim, kernel=kernel, hdx=1.3) as s:
@@ -81,14 +85,16 @@ def test_plain_gradient(dim, kernel):
             i, j, d, r = pairs(x, s.kernel.cut)
             grad = s.kernel.g(r)[:, None] * d
             L = sum_over(i, V[j, None, None] * (v[j] - v[i])[:, :, None] * grad[:, None, :], s.n)
-            expected = np.array([S - p * np.eye(3) for p, S in (step(a, dt, "strain", dim) for a in L)])
+            expected = np.array(
+                [S - p * np.eye(3) for p, S in (step(a, dt, "strain", dim) for a in L)])
             # pressure from the density: 1e-16 of rho over a change of 1e-4 of it
             close(inplane(s.run(1).sigma, dim), inplane(expected, dim), 1e-11)
         if jitter == 0.0:
             inside = (np.abs(x - x.mean(0)) < 0.11).all(1)    # all neighbors are there
             error = np.abs(L[inside] - A).max()
             print(f"plain gradient inside, {dim}D {kernel} 1.3: off by {error:.1e} of A")
-            assert error < 0.04                               # the moment of the lattice differs from 1 by so much
+            # the moment of the lattice differs from 1 by so much
+            assert error < 0.04
 
 
 @DIMS
@@ -104,7 +110,8 @@ def test_signs(dim):
         x = s.get("x")
         angle = np.pi / 4
         s.put("v", x @ spin.T)
-        turned = s.run(1, dt=2 * angle - 1e-3).sigma              # the stress goes from the middle of a step to that of the next
+        # the stress goes from the middle of a step to that of the next
+        turned = s.run(1, dt=2 * angle - 1e-3).sigma
         Q = np.eye(3)
         Q[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
         # p is 1e-3 K +- 1e-16 K
@@ -114,8 +121,10 @@ def test_signs(dim):
 
 @PLANES
 def test_von_mises(dim, plane):
-    """sqrt(3/2 S:S) of the deviator of the whole stress, which has three components along the axes in 2D, too."""
-    with block(linear(dim), dim, 1e-3, plane=plane, commands=["compute vm all fsi/atom vonmises"]) as s:
+    """sqrt(3/2 S:S) of the deviator of the whole stress, which has three components along the axes
+    in 2D, too."""
+    with block(linear(dim), dim, 1e-3, plane=plane,
+               commands=["compute vm all fsi/atom vonmises"]) as s:
         sigma = s.run(1).sigma
         deviator = sigma - np.trace(sigma, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
         expected = np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2)))
@@ -139,7 +148,8 @@ def test_rigid_rotation(dim):
 
 @PLANES
 def test_stiffness(dim, plane):
-    """Stretched along x with the lateral contraction of elasticity: sigma_xx = E' e, the sides free of stress."""
+    """Stretched along x with the lateral contraction of elasticity: sigma_xx = E' e, the sides free
+    of stress."""
     strain = 1e-6
     if dim == 3 or plane == "stress":
         modulus, lateral = E, NU
@@ -159,13 +169,15 @@ def test_stiffness(dim, plane):
 @DIMS
 @pytest.mark.parametrize("shear", [False, True])
 def test_wave_in_a_solid(dim, shear):
-    """Standing longitudinal or transverse wave in a periodic block: its frequency is that of elasticity."""
+    """Standing longitudinal or transverse wave in a periodic block: its frequency is that of
+    elasticity."""
     n, dx, u0 = (24, *[5] * (dim - 1)), 0.1, 1e-4
     x, k = lattice(n, dx), 2 * np.pi / 2.4
     c = np.sqrt((G if shear else K + 4 / 3 * G) / RHO)
     v = np.zeros_like(x)
     v[:, 1 if shear else 0] = u0 * c * k * np.sin(k * x[:, 0])
-    with Scene(x, v, dim=dim, dx=dx, dt=0.002, materials=(MATERIAL,), solid="gradient corrected", boundary="p p p",
+    with Scene(x, v, dim=dim, dx=dx, dt=0.002, materials=(MATERIAL,), solid="gradient corrected",
+               boundary="p p p",
                box=((0, 0, 0), (2.4, 0.5, 0.5))) as s:
         mode = []
         for _ in range(50):
@@ -176,7 +188,8 @@ def test_wave_in_a_solid(dim, shear):
     zero = np.nonzero(mode[:-1] * mode[1:] < 0)[0][0]
     quarter = t[zero] + 0.008 * mode[zero] / (mode[zero] - mode[zero + 1])
     speed = np.pi / 2 / quarter / k
-    print(f"{'transverse' if shear else 'longitudinal'} wave, {dim}D: {speed / c:.4f} of the theoretical speed")
+    print(f"{'transverse' if shear else 'longitudinal'} wave, {dim}D: {speed / c:.4f} of the "
+          "theoretical speed")
     # wave length of 24 spacings, 16 h: the kernel smooths by about (k h)^2/10, twice
     assert abs(speed / c - 1) < 0.04
 
@@ -195,7 +208,8 @@ def reference_force(s, x, v, rho, sigma, mol, alpha, beta, epsilon):
     same = mol[i] == mol[j]
     v2 = (V**2)[:, None, None]
     t = (sigma * v2)[i] + (sigma * v2)[j] + f4[:, None, None] * ((R * v2)[i] + (R * v2)[j])
-    contact = K * s.dx**(dim - 2) * np.maximum(s.dx / r - 1, 0) / k.g(r)    # between bodies: nothing but contact
+    # between bodies: nothing but contact
+    contact = K * s.dx**(dim - 2) * np.maximum(s.dx / r - 1, 0) / k.g(r)
     t = np.where(same[:, None, None], t, contact[:, None, None] * np.eye(dim))
     mu = np.minimum(((v[i] - v[j])[:, :dim] * d).sum(1), 0) * k.h / (r**2 + 0.01 * k.h**2)
     Q = (rho[i] + rho[j]) / 2 * V[i] * V[j] * (-alpha * c * mu + beta * mu**2)
@@ -206,10 +220,12 @@ def reference_force(s, x, v, rho, sigma, mol, alpha, beta, epsilon):
 
 
 @DIMS
-@pytest.mark.parametrize("alpha,beta,epsilon", [(0, 0, 0), (0, 0, 0.3), (0.5, 0, 0), (0, 2, 0), (0.4, 1, 0.2)])
+@pytest.mark.parametrize("alpha,beta,epsilon",
+                         [(0, 0, 0), (0, 0, 0.3), (0.5, 0, 0), (0, 2, 0), (0.4, 1, 0.2)])
 @pytest.mark.parametrize("bodies", [1, 2])
 def test_force(dim, alpha, beta, epsilon, bodies):
-    """Pair forces of a cloud with a stress, a velocity and a density that differ from particle to particle."""
+    """Pair forces of a cloud with a stress, a velocity and a density that differ from particle to
+    particle."""
     x, v = cloud([6] * dim, 0.1, vmax=3.0)
     mol = 1 + (x[:, 0] > x[:, 0].mean()) * (bodies - 1)
     with Scene(x, v, dim=dim, dx=0.1, dt=0.01, materials=(MATERIAL,), mol=mol,
@@ -217,17 +233,21 @@ def test_force(dim, alpha, beta, epsilon, bodies):
         s.run(1)
         s.put("x", x)
         s.run()
-        expected = reference_force(s, x, s.get("v"), s.get("rho"), s.sigma, mol, alpha, beta, epsilon)
-        close(s.get("f"), expected, 1e-11)    # sums of 20 to 60 terms that cancel in part; p from rho - rho0
+        expected = reference_force(s, x, s.get("v"), s.get("rho"), s.sigma, mol, alpha, beta,
+                                   epsilon)
+        # sums of 20 to 60 terms that cancel in part; p from rho - rho0
+        close(s.get("f"), expected, 1e-11)
 
 
 @DIMS
 def test_artificial_stress_only_in_tension(dim):
     x, v = cloud([5] * dim, 0.1, jitter=0.1)
-    for scale, same in ((1.03, True), (0.97, False)):         # density above and below rho0, no shear stress
+    # density above and below rho0, no shear stress
+    for scale, same in ((1.03, True), (0.97, False)):
         force = []
         for epsilon in (0, 0.3):
-            with Scene(x, v, dim=dim, dx=0.1, materials=(MATERIAL,), solid=f"artificial/stress {epsilon}") as s:
+            with Scene(x, v, dim=dim, dx=0.1, materials=(MATERIAL,),
+                       solid=f"artificial/stress {epsilon}") as s:
                 s.run()
                 s.put("rho", RHO * scale)
                 force.append(s.run().get("f"))
@@ -237,12 +257,14 @@ def test_artificial_stress_only_in_tension(dim):
 @DIMS
 @pytest.mark.parametrize("rho", [0.97, 1.03])
 def test_bodies_only_push(dim, rho):
-    """Two blocks side by side, under tension or pressure of their own: nothing crosses before they touch, then K strain."""
+    """Two blocks side by side, under tension or pressure of their own: nothing crosses before they
+    touch, then K strain."""
     x = lattice([6] + [4] * (dim - 1), 0.1)
     left = x[:, 0] < 0.3
     for gap in (1.001, 0.9):
         y = x + np.where(left, 0, (gap - 1) * 0.1)[:, None] * [1, 0, 0]
-        with Scene(y, dim=dim, dx=0.1, materials=(MATERIAL,), mol=np.where(left, 1, 2), solid="artificial/stress 0.3") as s:
+        with Scene(y, dim=dim, dx=0.1, materials=(MATERIAL,), mol=np.where(left, 1, 2),
+                   solid="artificial/stress 0.3") as s:
             s.run()
             s.put("rho", RHO * rho)
             f = s.run().get("f")[:, 0]
@@ -253,9 +275,11 @@ def test_bodies_only_push(dim, rho):
 @DIMS
 @pytest.mark.parametrize("gradient", ["corrected", "quadratic"])
 def test_corrected_forces_keep_momenta(dim, gradient):
-    """On any arrangement of particles: the force is the adjoint of a gradient that sees no strain in a rotation."""
+    """On any arrangement of particles: the force is the adjoint of a gradient that sees no strain
+    in a rotation."""
     x, v = cloud([6] * dim, 0.1, vmax=0.3)
-    with Scene(x, v, dim=dim, dx=0.1, dt=0.01, materials=(MATERIAL,), solid=f"gradient {gradient}") as s:
+    with Scene(x, v, dim=dim, dx=0.1, dt=0.01, materials=(MATERIAL,),
+               solid=f"gradient {gradient}") as s:
         f, y = s.run(1).run().get("f"), s.get("x")
     scale = np.abs(f).sum()
     assert np.abs(f.sum(0)).max() < 1e-13 * scale
@@ -266,16 +290,19 @@ def test_corrected_forces_keep_momenta(dim, gradient):
 @DIMS
 @pytest.mark.parametrize("gradient", ["plain", "corrected", "quadratic"])
 def test_hourglass_control(dim, gradient):
-    """Momentum is kept on any arrangement; a uniform velocity gradient, which a corrected gradient sees, makes no force."""
+    """Momentum is kept on any arrangement; a uniform velocity gradient, which a corrected gradient
+    sees, makes no force."""
     x, v = cloud([6] * dim, 0.1, jitter=0.1, vmax=0.3)
     random, uniform = {}, {}
     for xi in (0, 0.5):
         for case, speed in ((random, v), (uniform, 0.3 * x @ linear(dim).T)):
-            with Scene(x, speed, dim=dim, dx=0.1, dt=0.01, materials=(MATERIAL,), solid=f"hourglass {xi} gradient {gradient}") as s:
+            with Scene(x, speed, dim=dim, dx=0.1, dt=0.01, materials=(MATERIAL,),
+                       solid=f"hourglass {xi} gradient {gradient}") as s:
                 case[xi] = s.run(1).run().get("f")
     change = random[0.5] - random[0]
     assert np.abs(change).max() > 0.01 * np.abs(random[0]).max()
-    # each particle's sum turns with it: momentum is kept but for spins that differ, of which the first step knows nothing but dt w
+    # each particle's sum turns with it: momentum is kept but for spins that differ, of which the
+    # first step knows nothing but dt w
     assert np.abs(change.sum(0)).max() < 0.02 * np.abs(change).sum()
     same = np.abs(uniform[0.5] - uniform[0]).max() / np.abs(uniform[0]).max()
     assert same > 1e-3 if gradient == "plain" else same < 1e-12
@@ -283,7 +310,8 @@ def test_hourglass_control(dim, gradient):
 
 @DIMS
 def test_quadratic_field(dim):
-    """gradient quadratic is exact for v quadratic in x in every particle of a shaken block, corners too; corrected is not."""
+    """gradient quadratic is exact for v quadratic in x in every particle of a shaken block, corners
+    too; corrected is not."""
     x, _ = cloud([6] * dim, 0.1, jitter=0.2)
     B = np.random.default_rng(5).uniform(-1, 1, (dim, dim, dim))
     v = np.zeros_like(x)
@@ -295,7 +323,8 @@ def test_quadratic_field(dim):
     expected = dt * (2 * G * (e - trace / 3) + K * trace)
     error = {}
     for gradient in ("corrected", "quadratic"):
-        with Scene(x, v, dim=dim, dx=0.1, dt=dt, materials=(MATERIAL,), solid=f"gradient {gradient}") as s:
+        with Scene(x, v, dim=dim, dx=0.1, dt=dt, materials=(MATERIAL,),
+                   solid=f"gradient {gradient}") as s:
             sigma = np.array(inplane(s.run(1).sigma, dim))
         error[gradient] = np.abs(sigma - expected).max() / np.abs(expected).max()
     assert error["quadratic"] < 1e-5 < 0.01 < error["corrected"]
@@ -304,9 +333,11 @@ def test_quadratic_field(dim):
 @pytest.mark.parametrize("ranks", (1, 2))
 @pytest.mark.parametrize("law", ("rate", "hypo"))
 def test_turned_between_runs(tmp_path, law, ranks):
-    """Stress is not turned, which a warning says: of what turns or strains a body that has stress, not of what moves it as a whole."""
+    """Stress is not turned, which a warning says: of what turns or strains a body that has stress,
+    not of what moves it as a whole."""
     scene = dam_gate(2)
-    text = scene.text() if law == "rate" else total_lagrangian(scene.text()).replace("0.1 0.1", "0.1 0.1 law hypo") + "fix stress all fsi/stress\n"
+    text = scene.text() if law == "rate" else total_lagrangian(scene.text()).replace(
+        "0.1 0.1", "0.1 0.1 law hypo") + "fix stress all fsi/stress\n"
     text = text.replace("fix sph all", "group water type 1\ngroup plate type 2\nfix sph all")
     turn = "displace_atoms plate rotate 0 0 0 0 0 1 {} units box\n"
     done = run(tmp_path, f"""{text}
@@ -332,17 +363,24 @@ def test_virial_does_not_depend_on_the_place(tmp_path, hourglass, plane):
     virials = []
     for newton, at in (("on", 0.0), ("off", 0.0), ("on", 0.7)):
         text = deck(f"{at - 1} {at + 3} {at - 1} {at + 3}", 0.1, {"rubber": MATERIAL},
-                    f"variable u atom 2*(y-{at})*sin(x-{at})", f"variable w atom sin(3*(x-{at}))", "velocity all set v_u v_w 0 units box",
-                    f"fix w all fsi/wall/mirror ylo {at} {plane}" if plane else "", "compute c all pressure NULL virial",
-                    "thermo_style custom step c_c[1] c_c[2]", "thermo_modify format float %.15g", "run 60", before=[f"newton {newton}"],
-                    solid_style="fsi/solid", solid=f"artificial/visc 0.1 0 hourglass {hourglass}", dt=5e-4,
+                    f"variable u atom 2*(y-{at})*sin(x-{at})", f"variable w atom sin(3*(x-{at}))",
+                    "velocity all set v_u v_w 0 units box",
+                    f"fix w all fsi/wall/mirror ylo {at} {plane}" if plane else "",
+                    "compute c all pressure NULL virial",
+                    "thermo_style custom step c_c[1] c_c[2]", "thermo_modify format float %.15g",
+                    "run 60", before=[f"newton {newton}"],
+                    solid_style="fsi/solid", solid=f"artificial/visc 0.1 0 hourglass {hourglass}",
+                    dt=5e-4,
                     body=f"{at} {at + 1.5} {at} {at + 0.5}")
-        virials.append(np.array(re.search(r"^ +60 (.*)$", run(tmp_path / f"{newton}{at}", text).output, re.M)[1].split(), float))
+        virials.append(np.array(re.search(r"^ +60 (.*)$",
+                                          run(tmp_path / f"{newton}{at}", text).output,
+                                          re.M)[1].split(), float))
     close(virials[1], virials[0], 1e-10)
     close(virials[2], virials[0], 1e-10)
 
 
 def test_hourglass_that_is_off_cannot_be_adapted():
-    with Scene(lattice([6, 4], 0.1), dx=0.1, materials=(MATERIAL,), commands=["variable h equal 0.1", "fix a all adapt 1 pair fsi/solid hourglass * * v_h"]) as s:
+    with Scene(lattice([6, 4], 0.1), dx=0.1, materials=(MATERIAL,), commands=[
+        "variable h equal 0.1", "fix a all adapt 1 pair fsi/solid hourglass * * v_h"]) as s:
         with pytest.raises(Exception, match="hourglass is off: begin with a value > 0"):
             s.run()

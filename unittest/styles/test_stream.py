@@ -14,12 +14,15 @@ def channel(n, dx, stream, *commands, v=0.0, dt=None, zone="1 3"):
     """Water that fills a periodic box from 0 on"""
     x = lattice(n, dx)
     box = ((0, 0, 0), (n[0] * dx, n[1] * dx, 0))
-    return Scene(x, v + np.zeros_like(x), dx=dx, fluid="sound 10 tension yes", box=box, boundary="p p p", dt=dt or 0.25 * 1.5 * dx / 11,
-                 commands=[f"region zone block {zone} INF INF INF INF units box", f"fix s all fsi/stream {stream} region zone", *commands])
+    return Scene(x, v + np.zeros_like(x), dx=dx, fluid="sound 10 tension yes", box=box,
+                 boundary="p p p", dt=dt or 0.25 * 1.5 * dx / 11,
+                 commands=[f"region zone block {zone} INF INF INF INF units box",
+                           f"fix s all fsi/stream {stream} region zone", *commands])
 
 
 def test_uniform_flow_from_rest():
-    """A column of water is driven as one: U - u decays with the rate, half of it over half of its length."""
+    """A column of water is driven as one: U - u decays with the rate, half of it over half of its
+    length."""
     n, dx, U, rate = (40, 6), 0.1, 0.5, 8.0
     dt = 0.25 * 0.15 / 11
     with channel(n, dx, f"{U} NULL NULL rate {rate}", "compute e all fsi/energy", dt=dt) as s:
@@ -30,8 +33,10 @@ def test_uniform_flow_from_rest():
         for _ in range(100):
             before = s.momentum()
             s.lmp.command("run 1 pre no post no")
-            given = np.array([s.lmp.extract_fix("s", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k) for k in range(2)])
-            assert np.abs(s.momentum()[:2] - before[:2] - dt * given).max() < 1e-13 * mass * U    # to round-off
+            given = np.array([s.lmp.extract_fix("s", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k)
+                              for k in range(2)])
+            # to round-off
+            assert np.abs(s.momentum()[:2] - before[:2] - dt * given).max() < 1e-13 * mass * U
             impulse += dt * given
         assert impulse[0] > 0.05 * mass * U and impulse[1] == 0
         left = round(2.0 / dt) - 100
@@ -39,9 +44,11 @@ def test_uniform_flow_from_rest():
         u = s.momentum()[0] / mass
         law = U * (1 - np.exp(-rate * 0.25 * (left + 100) * dt))
         print(f"stream: {u:.4f} m/s after 2 s, of a rigid column {law:.4f}")
-        assert abs(u / law - 1) < 0.02         # sound runs through the box five times: inside it the flow is not quite rigid
+        # sound runs through the box five times: inside it the flow is not quite rigid
+        assert abs(u / law - 1) < 0.02
         work, kinetic = s.fix_scalar("s"), 0.5 * mass * u**2
-        # what it has given is in the water, but for what the change of a velocity of other particles loses
+        # what it has given is in the water, but for what the change of a velocity of other
+        # particles loses
         assert kinetic < work < 2.2 * kinetic
         assert abs(ledger() - start) < 5e-3 * work
 
@@ -57,11 +64,14 @@ def test_force_in_the_zone():
 
 
 def test_zone_between_lists():
-    """Fluid that comes into the zone, round the box, between two lists is driven at once; what a variable says elsewhere does not matter."""
+    """Fluid that comes into the zone, round the box, between two lists is driven at once; what a
+    variable says elsewhere does not matter."""
     def end(lists, u):
-        with channel((40, 6), 0.1, "v_u NULL NULL rate 50", f"variable u atom {u}", f"neigh_modify {lists}", v=[1.0, 0.0, 0.0], dt=1e-3, zone="0 1.2") as s:
+        with channel((40, 6), 0.1, "v_u NULL NULL rate 50", f"variable u atom {u}",
+                     f"neigh_modify {lists}", v=[1.0, 0.0, 0.0], dt=1e-3, zone="0 1.2") as s:
             return s.run(400).get("v")
-    seldom, often = (end(lists, "1.5+0*sqrt((x-1.7)*(x-3.5))") for lists in ("every 1 delay 0 check yes", "every 1 delay 0 check no"))
+    seldom, often = (end(lists, "1.5+0*sqrt((x-1.7)*(x-3.5))")
+                     for lists in ("every 1 delay 0 check yes", "every 1 delay 0 check no"))
     assert np.abs(often[:, 0] - 1).max() > 0.1
     assert np.abs(seldom - often).max() < 1e-10
     # no number from x = 1.7 to 3.5; the same speed as a number
@@ -69,9 +79,11 @@ def test_zone_between_lists():
 
 
 def pulse(stream):
-    """Sound that goes to the right, a packet without mean from 1.5 to 6.5: size of the velocity beyond the zone, and before it and in it"""
+    """Sound that goes to the right, a packet without mean from 1.5 to 6.5: size of the velocity
+    beyond the zone, and before it and in it"""
     n, dx, c, rho, dt = (240, 4), 0.05, 10.0, 1000.0, 1.5e-3
-    shape = lambda x: np.where(abs(x - 1.5) < 1.0, np.sin(2 * np.pi * (x - 1.5)) * np.cos(np.pi * (x - 1.5) / 2)**2, 0.0)
+    shape = lambda x: np.where(abs(x - 1.5) < 1.0, np.sin(2 * np.pi * (x - 1.5))
+                               * np.cos(np.pi * (x - 1.5) / 2)**2, 0.0)
     with channel(n, dx, "0 NULL NULL rate " + stream, dt=dt, zone="3 5") as s:
         s.run()
         x = s.get("x")[:, 0]
@@ -86,15 +98,19 @@ def pulse(stream):
 
 
 def test_sound_is_absorbed():
-    """Velocity and density decay with the same rate k w, so by exp(-k L/2c) on the way through, and little comes back."""
+    """Velocity and density decay with the same rate k w, so by exp(-k L/2c) on the way through, and
+    little comes back."""
     rate, L = 10.0, 2.0
-    through, lag, c = pulse("1e-9")    # the group's speed: waves of 20 spacings are slower than long ones
+    # the group's speed: waves of 20 spacings are slower than long ones
+    through, lag, c = pulse("1e-9")
     absorbed, back, _ = pulse(f"{rate} density {rate}")
     half = pulse(f"{rate}")[0]
     law = np.exp(-rate * L / (2 * c))
-    print(f"stream: sound, {c:.2f} m/s, passes with {absorbed / through:.4f}, law {law:.4f}; without damping of density {half / through:.4f}, law {law**0.5:.4f}; "
+    print(f"stream: sound, {c:.2f} m/s, passes with {absorbed / through:.4f}, law {law:.4f}; "
+          f"without damping of density {half / through:.4f}, law {law**0.5:.4f}; "
           f"behind it {back / through:.1e}, without stream {lag / through:.1e}")
-    # the packet disperses: its parts are in the zone for times that differ by some per cent, and the zone's mean follows it a little
+    # the packet disperses: its parts are in the zone for times that differ by some per cent, and
+    # the zone's mean follows it a little
     assert abs(absorbed / through / law - 1) < 0.05
     assert abs(half / through / law**0.5 - 1) < 0.03
     assert back < lag    # what is slow lies behind in any case
@@ -119,24 +135,31 @@ STREAM = "fix s all fsi/stream v_u v_w NULL region zone rate 20 density 20"
 
 
 def deck(start=ATOMS, newton="on", moving="all", materials="water water", zone=ZONE, stream=STREAM):
-    return begin(f"newton {newton}", boundary="p f p") + start + PHYSICS.format(moving=moving, materials=materials, zone=zone, stream=stream)
+    return begin(f"newton {newton}", boundary="p f p") + start + PHYSICS.format(
+        moving=moving, materials=materials, zone=zone, stream=stream)
 
 
 def test_restart_goes_on_bit_for_bit(tmp_path):
     printed = "\nfix p all print 40 '$(f_s:%.17g)' file {}.txt screen no\n"
-    whole = run(tmp_path, deck() + watch(every=80) + printed.format("whole") + "restart 40 mid.*\nrun 80\n").frames()[-1]
-    rest = run(tmp_path, deck("read_restart mid.40") + watch("rest.dump", 80) + printed.format("rest") + "restart 40 other.*\nrun 40\n").frames("rest.dump")[-1]
+    whole = run(tmp_path, deck() + watch(every=80) + printed.format("whole")
+                + "restart 40 mid.*\nrun 80\n").frames()[-1]
+    rest = run(tmp_path, deck("read_restart mid.40") + watch("rest.dump", 80)
+               + printed.format("rest") + "restart 40 other.*\nrun 40\n").frames("rest.dump")[-1]
     assert differing(whole, rest) == []
-    assert (tmp_path / "whole.txt").read_text().split()[-1] == (tmp_path / "rest.txt").read_text().split()[-1]
+    assert (tmp_path / "whole.txt").read_text().split()[-1] == (
+        tmp_path / "rest.txt").read_text().split()[-1]
 
 
 @pytest.mark.parametrize("ranks, newton", [(2, "on"), (4, "off")])
 def test_ranks_agree(tmp_path, ranks, newton):
     run(tmp_path, deck(newton=newton) + "run 1\nwrite_restart start\n")
-    one = run(tmp_path, deck("read_restart start", newton) + watch(every=80) + "run 79\n").frames()[-1]
-    more = run(tmp_path, deck("read_restart start", newton) + watch(every=80) + "run 79\n", ranks).frames()[-1]
+    one = run(tmp_path, deck("read_restart start", newton) + watch(every=80)
+              + "run 79\n").frames()[-1]
+    more = run(tmp_path, deck("read_restart start", newton) + watch(every=80) + "run 79\n",
+               ranks).frames()[-1]
     for quantity in ("x", "v", "rho"):
-        assert difference(one, more, quantity) < 1e-11, quantity    # round-off of 80 steps, see test_parallel
+        # round-off of 80 steps, see test_parallel
+        assert difference(one, more, quantity) < 1e-11, quantity
 
 
 BAD = [
@@ -147,20 +170,31 @@ BAD = [
     ("along", {"stream": STREAM + " along u"}, r"along u: expected x, y or z"),
     ("along z in 2D", {"stream": STREAM + " along z"}, r"no flow along z in 2D"),
     ("vz in 2D", {"stream": STREAM.replace("NULL", "0")}, r"along z must be NULL in 2D"),
-    ("velocity", {"stream": STREAM.replace("v_u", "fast")}, r"velocity fast is not a number: expected a number, or NULL or v_name"),
-    ("nothing to drive", {"stream": "fix s all fsi/stream NULL NULL NULL region zone rate 20"}, r"drives nothing: expected a velocity or keyword density"),
+    ("velocity", {"stream": STREAM.replace("v_u", "fast")},
+     r"velocity fast is not a number: expected a number, or NULL or v_name"),
+    ("nothing to drive", {"stream": "fix s all fsi/stream NULL NULL NULL region zone rate 20"},
+     r"drives nothing: expected a velocity or keyword density"),
     ("unknown region", {"zone": ""}, r"Region zone of fix fsi/stream does not exist"),
-    ("unknown variable", {"stream": STREAM.replace("v_u", "v_fast")}, r"Variable fast of fix fsi/stream does not exist"),
-    ("wrong variable", {"stream": "variable i index 1\n" + STREAM.replace("v_u", "v_i")}, r"Variable i of fix fsi/stream must be equal-style or atom-style"),
-    ("no fluid", {"zone": ZONE.replace("INF INF INF", "1.2 1.4 INF")}, r"Region zone of fix fsi/stream has no fluid of group all"),
-    ("outside the box", {"zone": ZONE.replace("1 3", "3 5")}, r"from 3 to 5 along x, must be inside the box, from 0 to 4"),
+    ("unknown variable", {"stream": STREAM.replace("v_u", "v_fast")},
+     r"Variable fast of fix fsi/stream does not exist"),
+    ("wrong variable", {"stream": "variable i index 1\n" + STREAM.replace("v_u", "v_i")},
+     r"Variable i of fix fsi/stream must be equal-style or atom-style"),
+    ("no fluid", {"zone": ZONE.replace("INF INF INF", "1.2 1.4 INF")},
+     r"Region zone of fix fsi/stream has no fluid of group all"),
+    ("outside the box", {"zone": ZONE.replace("1 3", "3 5")},
+     r"from 3 to 5 along x, must be inside the box, from 0 to 4"),
     ("no ends", {"zone": ZONE.replace("1 3", "INF 3")}, r"must be inside the box"),
     ("outside of faces", {"zone": ZONE.replace("units", "side out units")}, r"has no ends along x"),
-    ("moves", {"zone": "variable m equal 0.1*step\n" + ZONE + " move v_m NULL NULL"}, r"requires a region that does not move or change"),
-    ("NaN", {"zone": ZONE + "\nvariable u atom 1e200*1e200*(y-0.5)"}, r"velocity -?(inf|nan) along x of atom \d+ is no number, see variable u"),
-    ("summation", {}, r"Fix fsi/stream density requires density by continuity, as fix fsi scheme standard has it: a sum cannot be damped"),
-    ("a solid", {"start": ATOMS + "region solid block 2 2.3 0.3 0.6 INF INF units box\nset region solid type 2",
-                 "materials": "water plate", "moving": "all"}, r"Atom \d+ of a solid is in region zone of fix fsi/stream"),
+    ("moves", {"zone": "variable m equal 0.1*step\n" + ZONE + " move v_m NULL NULL"},
+     r"requires a region that does not move or change"),
+    ("NaN", {"zone": ZONE + "\nvariable u atom 1e200*1e200*(y-0.5)"},
+     r"velocity -?(inf|nan) along x of atom \d+ is no number, see variable u"),
+    ("summation", {}, r"Fix fsi/stream density requires density by continuity, as fix fsi scheme "
+     r"standard has it: a sum cannot be damped"),
+    ("a solid", {"start": ATOMS + "region solid block 2 2.3 0.3 0.6 INF INF units box\n"
+                 "set region solid type 2",
+                 "materials": "water plate", "moving": "all"},
+     r"Atom \d+ of a solid is in region zone of fix fsi/stream"),
 ]
 
 
@@ -168,25 +202,36 @@ BAD = [
 def test_bad_input(tmp_path, name, change, message):
     text = deck(**change)
     if name == "summation":
-        text = text.replace(" density/diffusion 0.1", "").replace("wendland 1.5", "wendland 1.5 fluid summation")
+        text = text.replace(" density/diffusion 0.1", "").replace("wendland 1.5",
+                                                                  "wendland 1.5 fluid summation")
     if "solid" in name:
-        text = text.replace("pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1", "pair_style hybrid fsi/fluid sound 10 fsi/solid/tl"
-                            ).replace("pair_coeff * * materials.fsi water plate", "pair_coeff * * fsi/fluid materials.fsi water plate\n"
-                                      "pair_coeff * * fsi/solid/tl materials.fsi NULL plate")
+        text = text.replace(
+            "pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1",
+            "pair_style hybrid fsi/fluid sound 10 fsi/solid/tl"
+            ).replace("pair_coeff * * materials.fsi water plate",
+                      "pair_coeff * * fsi/fluid materials.fsi water plate\n"
+                      "pair_coeff * * fsi/solid/tl materials.fsi NULL plate")
     result = lammps(tmp_path, text + "run 1\n")
-    assert result.status != 0 and any(re.search(message, line) for line in result.errors), result.output[-1500:]
+    assert result.status != 0 and any(re.search(message, line)
+                                      for line in result.errors), result.output[-1500:]
 
 
 def test_order_of_the_script_does_not_matter(tmp_path):
-    """A zone that damps densities reaches into the buffer of an open end: what the end gives its particles stands, whichever of the two the script has
-    first. Parts of a step have a rank (fsi_part.h)."""
+    """A zone that damps densities reaches into the buffer of an open end: what the end gives its
+    particles stands, whichever of the two the script has first. Parts of a step have a rank
+    (fsi_part.h)."""
     def end(*fixes):
-        text = whole_deck("-0.08 0.28 -0.05 0.15", 0.01, INVISCID, "fix mirror all fsi/wall/mirror ylo 0 yhi 0.1", "region zone block -0.06 0.06 INF INF INF INF units box",
-                          *fixes, "fix outlet all fsi/outlet xhi 0.2", watch(every=20) + "run 20", fluid="sound 10 background 500 tension yes density/diffusion 0.1",
-                          made="displace_atoms all random 0.0005 0.0005 0 7 units box\nvelocity all set 0.5 0 0 units box", water="0 0.2 0 0.1")
+        text = whole_deck("-0.08 0.28 -0.05 0.15", 0.01,
+                          INVISCID, "fix mirror all fsi/wall/mirror ylo 0 yhi 0.1",
+                          "region zone block -0.06 0.06 INF INF INF INF units box",
+                          *fixes, "fix outlet all fsi/outlet xhi 0.2", watch(every=20) + "run 20",
+                          fluid="sound 10 background 500 tension yes density/diffusion 0.1",
+                          made="displace_atoms all random 0.0005 0.0005 0 7 units box\n"
+                          "velocity all set 0.5 0 0 units box", water="0 0.2 0 0.1")
         folder = tmp_path / str(len(list(tmp_path.iterdir())))
         return run(folder, text).frames()[-1]
-    inlet, stream = "fix inlet all fsi/inlet xlo 0 velocity 0.5 0 0", "fix stream all fsi/stream 0.5 NULL NULL region zone rate 20"
+    inlet, stream = ("fix inlet all fsi/inlet xlo 0 velocity 0.5 0 0",
+                     "fix stream all fsi/stream 0.5 NULL NULL region zone rate 20")
     first, last = end(inlet, stream + " density 500"), end(stream + " density 500", inlet)
     assert differing(first, last) == []
     assert "rho" in differing(first, end(inlet, stream))    # the zone has something to damp

@@ -30,7 +30,8 @@ def outermost(x, dim, closed=()):
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_block_in_the_open(rule, dim, kernel):
-    """The first layer, all of it and no other: psi of layer 1 is 0.79 of the bulk's, of layer 2 0.99 (DESIGN)."""
+    """The first layer, all of it and no other: psi of layer 1 is 0.79 of the bulk's, of layer 2
+    0.99 (DESIGN)."""
     x = lattice([8] * dim, 0.1)
     assert np.array_equal(flags(x, rule, dim, kernel), outermost(x, dim))
 
@@ -44,7 +45,8 @@ def test_walls_are_no_surface(rule, dim, closed):
     x = lattice([8] * dim, 0.1)
     if dim == 3 and "xhi" in closed:
         closed = [*closed, "zlo", "zhi"]
-    walls = "fix walls all fsi/wall/mirror " + " ".join(f"{w} {0.0 if w.endswith('lo') else 0.8}" for w in closed)
+    walls = "fix walls all fsi/wall/mirror " + " ".join(f"{w} {0.0 if w.endswith('lo') else 0.8}"
+                                                        for w in closed)
     assert np.array_equal(flags(x, rule, dim, commands=[walls]), outermost(x, dim, closed))
 
 
@@ -56,15 +58,18 @@ def test_spray(rule, dim):
     thread = lattice([10] + [1] * (dim - 1), 0.1, origin=5.0)
     assert flags(np.vstack([alone, thread]), rule, dim).all()
     full = lattice([6] * dim, 0.1)
-    assert not flags(full, rule, dim, boundary="p p p", box=((0, 0, 0), (0.6, 0.6, 0.6)), skin=0.1).any()
+    assert not flags(full, rule, dim, boundary="p p p", box=((0, 0, 0), (0.6, 0.6, 0.6)),
+                     skin=0.1).any()
 
 
 @BOTH
 @pytest.mark.parametrize("dim", [2, 3])
 def test_thin_packing(rule, dim):
-    """A full box, its lattice stretched by 15 %: the divergence rule asks the densities, the paper's sees surface."""
+    """A full box, its lattice stretched by 15 %: the divergence rule asks the densities, the
+    paper's sees surface."""
     length = 8 * 0.115
-    with Scene(lattice([8] * dim, 0.115), dim=dim, dx=0.1, kernel="cubic", hdx=1.5, boundary="p p p", skin=0.1,
+    with Scene(lattice([8] * dim, 0.115), dim=dim, dx=0.1, kernel="cubic", hdx=1.5,
+               boundary="p p p", skin=0.1,
                box=((0, 0, 0), (length,) * 3)) as s:
         s.run().run_lines(f"compute surface all fsi/surface/atom {rule} 0.9")
         s.put("rho", 1000 / 1.15**dim)
@@ -87,14 +92,15 @@ def test_solid_in_the_fluid(rule, dim):
 
 
 def test_defined_before_the_first_run():
-    with Scene(lattice((4, 4), 0.1), dx=0.1, commands=["compute surface all fsi/surface/atom"]) as s:
+    with Scene(lattice((4, 4), 0.1), dx=0.1,
+               commands=["compute surface all fsi/surface/atom"]) as s:
         assert s.run().compute("surface", columns=False).sum() == 12
 
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_no_pressure_at_the_surface(dim):
-    """The article's rule in the equation of state: p = 0 where psi <= 0.9 of the largest one, c^2 (rho - rho0) elsewhere.
-    In a block (cubic, h = 1.2 dx) that is the first layer."""
+    """The article's rule in the equation of state: p = 0 where psi <= 0.9 of the largest one, c^2
+    (rho - rho0) elsewhere. In a block (cubic, h = 1.2 dx) that is the first layer."""
     x = lattice([8] * dim, 0.1)
     with Scene(x, dim=dim, dx=0.1, kernel="cubic", hdx=1.2, fluid="surface 0.9") as s:
         s.run()
@@ -103,9 +109,11 @@ def test_no_pressure_at_the_surface(dim):
         expected = np.where(outermost(x, dim), 0.0, 10.0**2 * 1.0)
         np.testing.assert_allclose(s.p, expected, rtol=1e-12)
     # packed 20 % denser, layer 1 has the psi of the lattice inside, and is surface still
-    with Scene(0.8 ** (1 / dim) * x, dim=dim, dx=0.1, kernel="cubic", hdx=1.2, fluid="surface 0.9") as s:
+    with Scene(0.8 ** (1 / dim) * x, dim=dim, dx=0.1, kernel="cubic", hdx=1.2,
+               fluid="surface 0.9") as s:
         s.run()
         s.put("rho", 1001.0)
         s.run()
-        face = outermost(x, dim) & (np.sum([(x[:, d] < 0.06) | (x[:, d] > 0.74) for d in range(dim)], axis=0) == 1)
+        face = outermost(x, dim) & (
+            np.sum([(x[:, d] < 0.06) | (x[:, d] > 0.74) for d in range(dim)], axis=0) == 1)
         assert np.all(s.p[face] == 0.0)

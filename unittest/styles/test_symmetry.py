@@ -24,17 +24,21 @@ def mirrored(x, axes):
 
 
 def halves(n, axes, seed=3, shake=0.15, speed=0.5, **options):
-    """Two scenes of a shaken body, a part of it with planes of symmetry at 0 and the whole, at rest when their bonds are made: (part, whole)."""
+    """Two scenes of a shaken body, a part of it with planes of symmetry at 0 and the whole, at rest
+    when their bonds are made: (part, whole)."""
     x = lattice(n, DX, 0.0)
     random = np.random.default_rng(seed)
-    moved, v = (random.uniform(-a, a, x.shape) * (np.arange(3) < len(n)) for a in (shake * DX, speed))
+    moved, v = (random.uniform(-a, a, x.shape) * (np.arange(3) < len(n))
+                for a in (shake * DX, speed))
     scenes = []
-    planes = "fix planes all fsi/wall/mirror " + " ".join(f"{'xyz'[a]}lo 0 symmetry yes" for a in axes)
+    planes = "fix planes all fsi/wall/mirror " + " ".join(f"{'xyz'[a]}lo 0 symmetry yes"
+                                                          for a in axes)
     more = options.pop("commands", ())
     box = [-0.4] * 3, [0.4] * 3
     for whole in (False, True):
         X = mirrored(x, axes if whole else ())
-        s = Scene(X, dim=len(n), dx=DX, box=box, **{"materials": (RUBBER,), "solid_style": "fsi/solid/tl", "dt": 1e-5, **options},
+        s = Scene(X, dim=len(n), dx=DX, box=box,
+                  **{"materials": (RUBBER,), "solid_style": "fsi/solid/tl", "dt": 1e-5, **options},
                   commands=[*([] if whole else [planes]), "compute e all fsi/energy", *more])
         s.run()
         d, u = moved, v
@@ -54,21 +58,26 @@ CASES = {
     "linear": {"solid": "gradient linear volumes plain hourglass 0.2"},
     "nearly incompressible": {"materials": ("solid rho 1000 young 1e5 poisson 0.49",)},
     "hypoelastic": {"solid": "law hypo", "commands": ["fix stress all fsi/stress"]},
-    "viscoelastic": {"solid": "law viscoelastic", "materials": ("solid rho 1000 young 1e5 poisson 0.3 prony 0.4 0.01",)},
+    "viscoelastic": {"solid": "law viscoelastic",
+                     "materials": ("solid rho 1000 young 1e5 poisson 0.3 prony 0.4 0.01",)},
     "sub-steps": {"density": "substeps 7", "solid": "artificial/visc 0.3 1.0"},
     "quintic": {"kernel": "quintic", "hdx": 1.0},
     "updated": {"solid_style": "fsi/solid"},
-    "updated, all effects": {"solid_style": "fsi/solid", "solid": "artificial/visc 0.3 1.0 artificial/stress 0.3 hourglass 0.2"},
-    "updated, corrected": {"solid_style": "fsi/solid", "solid": "gradient corrected artificial/visc 0.3 1.0 artificial/stress 0.3 hourglass 0.2"},
+    "updated, all effects": {"solid_style": "fsi/solid", "solid":
+                                 "artificial/visc 0.3 1.0 artificial/stress 0.3 hourglass 0.2"},
+    "updated, corrected": {"solid_style": "fsi/solid", "solid": "gradient corrected "
+                           "artificial/visc 0.3 1.0 artificial/stress 0.3 hourglass 0.2"},
     "updated, quadratic": {"solid_style": "fsi/solid", "solid": "gradient quadratic hourglass 0.2"},
     "updated, number density": {"solid_style": "fsi/solid", "density": "solid ratio"},
 }
 
 
-@pytest.mark.parametrize("n, axes", [([5, 6], (0,)), ([5, 4], (0, 1)), ([3, 4, 4], (0,)), ([3, 3, 3], (0, 1, 2))])
+@pytest.mark.parametrize("n, axes", [([5, 6], (0,)), ([5, 4], (0, 1)), ([3, 4, 4], (0,)),
+                                     ([3, 3, 3], (0, 1, 2))])
 @pytest.mark.parametrize("case", CASES)
 def test_a_part_is_the_whole(n, axes, case):
-    """Forces, stress and energy of a shaken state, and the motion after 60 steps, to round-off: sums come in another order."""
+    """Forces, stress and energy of a shaken state, and the motion after 60 steps, to round-off:
+    sums come in another order."""
     part, whole = halves(n, axes, **CASES[case])
     with part, whole:
         m, start = part.n, part.get("x")
@@ -78,7 +87,8 @@ def test_a_part_is_the_whole(n, axes, case):
             assert part.ledger()[3] == pytest.approx(whole.ledger()[3] / 2**len(axes), rel=1e-12)
         part.run(60), whole.run(60)
         moved = whole.get("x")[:m] - start
-        print(f"{case}: moved {np.abs(moved).max() / DX:.2f} spacings, apart {np.abs(part.get('x') - whole.get('x')[:m]).max() / np.abs(moved).max():.1e}")
+        print(f"{case}: moved {np.abs(moved).max() / DX:.2f} spacings, apart "
+              f"{np.abs(part.get('x') - whole.get('x')[:m]).max() / np.abs(moved).max():.1e}")
         close(part.get("x") - start, moved, 1e-9)
         close(part.get("f"), whole.get("f")[:m], 1e-9)
         close(part.sigma, whole.sigma[:m], 1e-9)
@@ -91,7 +101,8 @@ def test_images_where_arrays_are_full(tmp_path, style):
     """LAMMPS makes room for 16,384 particles at a time; of a body that has nearly as many, images
     in the plane lie beyond. Valgrind sees who reads them out of LAMMPS' arrays."""
     (tmp_path / "in.test").write_text(whole_deck(
-        "-1 1 0 41", DX, {"rubber": RUBBER}, PLANE, "run 0", solid_style=style, body="0 0.04 0 40.9"))
+        "-1 1 0 41", DX, {"rubber": RUBBER}, PLANE, "run 0", solid_style=style,
+        body="0 0.04 0 40.9"))
     command = ["valgrind", "-q", "--error-exitcode=9", str(paths.BUILD / "lmp"), "-in", "in.test"]
     done = subprocess.run(command, cwd=tmp_path, env=launch.environment(), stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, check=False)
@@ -99,9 +110,12 @@ def test_images_where_arrays_are_full(tmp_path, style):
 
 
 @DIMS
-@pytest.mark.parametrize("style, keywords", [("fsi/solid/tl", "hourglass 0.05"), ("fsi/solid/tl", "damage 0.1 gradient linear"), ("fsi/solid", "gradient quadratic")])
+@pytest.mark.parametrize("style, keywords", [("fsi/solid/tl", "hourglass 0.05"),
+                                             ("fsi/solid/tl", "damage 0.1 gradient linear"),
+                                             ("fsi/solid", "gradient quadratic")])
 def test_bodies_meet_across_the_plane(dim, style, keywords):
-    """Two bodies, the upper one thrown at the lower one along the plane, so that images take part in the contact; with damage bonds to images break."""
+    """Two bodies, the upper one thrown at the lower one along the plane, so that images take part
+    in the contact; with damage bonds to images break."""
     n = [3, 6] + [3] * (dim - 2)
     low = lattice(n, DX)
     up = low + [0, 7.5 * DX, 0]
@@ -113,10 +127,14 @@ def test_bodies_meet_across_the_plane(dim, style, keywords):
         X, u = x, v
         if whole:
             X, u = mirrored(x, (0,)), mirrored(v, (0,))
-        with Scene(X, u, dim=dim, dx=DX, mol=np.tile(mol, 2 if whole else 1), materials=(RUBBER,), solid_style=style, dt=2e-5, solid=f"contact 2 artificial/visc 0.2 0 {keywords}",
-                   commands=["compute e all fsi/energy", *([] if whole else ["fix planes all fsi/wall/mirror xlo 0 symmetry yes"])], box=([-0.3] * 3, [0.4] * 3)) as s:
+        with Scene(X, u, dim=dim, dx=DX, mol=np.tile(mol, 2 if whole else 1), materials=(RUBBER,),
+                   solid_style=style, dt=2e-5, solid=f"contact 2 artificial/visc 0.2 0 {keywords}",
+                   commands=["compute e all fsi/energy", *(
+                       [] if whole else ["fix planes all fsi/wall/mirror xlo 0 symmetry yes"])],
+                   box=([-0.3] * 3, [0.4] * 3)) as s:
             s.run(250)
-            ends.append((s.get("x")[:len(x)], s.get("f")[:len(x)], s.ledger() / (2 if whole else 1)))
+            ends.append((s.get("x")[:len(x)], s.get("f")[:len(x)],
+                         s.ledger() / (2 if whole else 1)))
     (a, fa, ea), (b, fb, eb) = ends
     assert (b[mol == 2, 1].min() - b[mol == 1, 1].max()) < 2 * DX    # they touch
     assert np.abs(b[:, 0] - x[:, 0]).max() > 0.1 * DX                # and bulge
@@ -125,15 +143,22 @@ def test_bodies_meet_across_the_plane(dim, style, keywords):
     close(ea[:9], eb[:9], 1e-8)
 
 
-@pytest.mark.parametrize(("style", "substeps"), [("fsi/solid/tl", 1), ("fsi/solid/tl", 5), ("fsi/solid", 1)])
+@pytest.mark.parametrize(("style", "substeps"),
+                         [("fsi/solid/tl", 1), ("fsi/solid/tl", 5), ("fsi/solid", 1)])
 def test_momentum_and_the_force_on_the_plane(style, substeps):
-    """Along the plane momentum is kept to round-off; across it the plane takes what the body loses, as fix fsi/wall/mirror counts; energy is kept."""
+    """Along the plane momentum is kept to round-off; across it the plane takes what the body loses,
+    as fix fsi/wall/mirror counts; energy is kept."""
     x, dt = lattice([6, 8], DX), 2e-5
     v = np.zeros_like(x)
     v[:, 0], v[:, 1] = -0.6 * x[:, 0] / x[:, 0].max(), 0.3 + 0.2 * np.sin(70 * x[:, 0])
-    solid = "hourglass 0.05 artificial/visc 0 0" if style == "fsi/solid/tl" else "gradient quadratic"    # its hourglass control moves momentum, of a whole body, too
-    with Scene(x, v, dx=DX, materials=(RUBBER,), solid_style=style, solid=solid, dt=dt, density=f"substeps {substeps}" if style == "fsi/solid/tl" else "",
-               commands=["compute e all fsi/energy", "fix planes all fsi/wall/mirror xlo 0 symmetry yes"], box=([-0.3] * 3, [0.4] * 3)) as s:
+    # its hourglass control moves momentum, of a whole body, too
+    solid = ("hourglass 0.05 artificial/visc 0 0" if style == "fsi/solid/tl"
+             else "gradient quadratic")
+    with Scene(x, v, dx=DX, materials=(RUBBER,), solid_style=style, solid=solid, dt=dt,
+               density=f"substeps {substeps}" if style == "fsi/solid/tl" else "",
+               commands=["compute e all fsi/energy",
+                         "fix planes all fsi/wall/mirror xlo 0 symmetry yes"],
+               box=([-0.3] * 3, [0.4] * 3)) as s:
         s.run()
         start, energy, given = s.momentum(), s.ledger().sum(), 0.0
         size = np.abs(s.get("rmass")[:, None] * s.get("v")).sum()
@@ -141,11 +166,13 @@ def test_momentum_and_the_force_on_the_plane(style, substeps):
             s.run(1)
             given += dt * s.fix_array("planes", 1)[0]
         now = s.momentum()
-        print(f"{style}, {substeps}: momentum across {start[0]:.3g} -> {now[0]:.3g}, plane took {given[0]:.3g}; energy {s.ledger().sum() / energy - 1:+.1e}")
+        print(f"{style}, {substeps}: momentum across {start[0]:.3g} -> {now[0]:.3g}, plane took "
+              f"{given[0]:.3g}; energy {s.ledger().sum() / energy - 1:+.1e}")
         assert abs(now[1] - start[1]) < 1e-13 * size and given[1] == 0
         assert abs(now[0] - start[0]) > 0.3 * size
         assert abs(now[0] - start[0] + given[0]) < 1e-12 * size
-        assert style == "fsi/solid" or abs(s.ledger().sum() / energy - 1) < 2e-3    # of the order of the step
+        # of the order of the step
+        assert style == "fsi/solid" or abs(s.ledger().sum() / energy - 1) < 2e-3
 
 
 DECK = """read_data scene.data
@@ -162,7 +189,8 @@ neigh_modify every 2 delay 0 check yes
 comm_modify cutoff 0.04
 thermo_modify norm no lost error
 """
-MATERIALS = materials(water=f"{WATER} viscosity 5", soft=RUBBER, stiff="solid rho 1300 young 3e5 poisson 0.45")
+MATERIALS = materials(water=f"{WATER} viscosity 5", soft=RUBBER,
+                      stiff="solid rho 1300 young 3e5 poisson 0.45")
 
 
 def bodies_in_water(dim, whole=False):
@@ -170,7 +198,8 @@ def bodies_in_water(dim, whole=False):
     x = lattice([12, 16] + [4] * (dim - 2), DX)
     soft = (x[:, 0] < 0.05) & (x[:, 1] > 0.02) & (x[:, 1] < 0.08)
     stiff = (x[:, 0] < 0.04) & (x[:, 1] > 0.1) & (x[:, 1] < 0.14)
-    v = np.stack([-2 * x[:, 0] * (soft | stiff), 0.4 * np.sin(40 * x[:, 0]) * soft - 1.5 * stiff, 0 * x[:, 0]], axis=1)
+    v = np.stack([-2 * x[:, 0] * (soft | stiff), 0.4 * np.sin(40 * x[:, 0]) * soft - 1.5 * stiff,
+                  0 * x[:, 0]], axis=1)
     kind = 1 + soft + 2 * stiff
     if whole:
         x, v, kind = mirrored(x, (0,)), mirrored(v, (0,)), np.tile(kind, 2)
@@ -180,10 +209,13 @@ def bodies_in_water(dim, whole=False):
 
 def deck(dim, style, newton="on", grid="* * *", plane="xlo 0 symmetry yes"):
     updated = style == "fsi/solid"
-    return start(f"newton {newton}", f"processors {grid}", dim=dim, boundary=f"f f {'f' if dim == 3 else 'p'}") + DECK.format(
+    return start(f"newton {newton}", f"processors {grid}", dim=dim,
+                 boundary=f"f f {'f' if dim == 3 else 'p'}") + DECK.format(
                        name=style,
-                       style=f"{style} contact 2 artificial/visc 0.1 0 " + ("gradient corrected hourglass 0.1" if updated else "hourglass 0.05"),
-                       substeps="" if updated else "substeps 4", stress="fix stress all fsi/stress" if updated else "",
+                       style=f"{style} contact 2 artificial/visc 0.1 0 "
+                       + ("gradient corrected hourglass 0.1" if updated else "hourglass 0.05"),
+                       substeps="" if updated else "substeps 4", stress="fix stress all fsi/stress"
+                       if updated else "",
                        planes=plane + (" zlo 0 symmetry yes zhi 0.04" if dim == 3 else ""))
 
 
@@ -197,30 +229,38 @@ def one_rank(tmp_path_factory):
 
     def of(dim, style):
         if (dim, style) not in frames:
-            frames[dim, style] = run(tmp_path_factory.mktemp("one"), deck(dim, style) + watch(every=100) + "run 200", **files(dim)).frames()
+            frames[dim, style] = run(tmp_path_factory.mktemp("one"), deck(dim, style)
+                                     + watch(every=100) + "run 200", **files(dim)).frames()
         return frames[dim, style]
     return of
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
-@pytest.mark.parametrize("dim, ranks, grid, newton", [(2, 1, "1 1 1", "off"), (2, 2, "2 1 1", "on"), (2, 4, "2 2 1", "off"), (3, 2, "1 1 2", "on"), (3, 4, "2 2 1", "off")])
+@pytest.mark.parametrize("dim, ranks, grid, newton", [(2, 1, "1 1 1", "off"), (2, 2, "2 1 1", "on"),
+                                                      (2, 4, "2 2 1", "off"), (3, 2, "1 1 2", "on"),
+                                                      (3, 4, "2 2 1", "off")])
 def test_ranks(tmp_path, one_rank, dim, ranks, grid, newton, style):
     """Two bodies in water before one plane, or two: as on one rank, to round-off."""
-    got = run(tmp_path, deck(dim, style, newton, grid) + watch(every=100) + "run 200", ranks, **files(dim)).frames()
+    got = run(tmp_path, deck(dim, style, newton, grid) + watch(every=100) + "run 200", ranks,
+              **files(dim)).frames()
     for a, b in zip(one_rank(dim, style), got):
         for quantity in ("x", "v", "f"):
-            assert difference(a, b, quantity, 1e3 if quantity == "f" else None) < 1e-9, (quantity, difference(a, b, quantity, 1))
+            assert difference(a, b, quantity, 1e3 if quantity == "f"
+                              else None) < 1e-9, (quantity, difference(a, b, quantity, 1))
 
 
 @pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
 def test_restart(tmp_path, style):
-    """As the run that wrote the file, whose lists are made anew at that step: bit for bit on one rank, from a file of two to round-off."""
+    """As the run that wrote the file, whose lists are made anew at that step: bit for bit on one
+    rank, from a file of two to round-off."""
     again = deck(2, style).split("pair_style")[1]
     for ranks in (1, 2):
-        whole = run(tmp_path / f"first{ranks}", deck(2, style) + watch(every=200) + "restart 100 state.*\nrun 200", ranks, **files(2)).frames()[-1]
+        whole = run(tmp_path / f"first{ranks}", deck(2, style) + watch(every=200)
+                    + "restart 100 state.*\nrun 200", ranks, **files(2)).frames()[-1]
         text = f"units si\nread_restart ../first{ranks}/state.100\npair_style" + again
-        got = run(tmp_path / f"second{ranks}", text + watch(every=200) + "restart 100 state.*\nrun 100", materials_fsi=MATERIALS).frames()[-1]
+        got = run(tmp_path / f"second{ranks}", text + watch(every=200)
+                  + "restart 100 state.*\nrun 100", materials_fsi=MATERIALS).frames()[-1]
         if ranks == 1:
             assert differing(whole, got) == []
         assert difference(whole, got, "x") < 1e-12 and difference(whole, got, "v") < 1e-9
@@ -228,11 +268,14 @@ def test_restart(tmp_path, style):
 
 @pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
 def test_half_in_water_is_the_whole(tmp_path, one_rank, style):
-    """The same with its mirror image instead of the plane: the same motion of bodies and water, to round-off. The water sticks to the bodies."""
-    b = run(tmp_path, deck(2, style, plane="xlo -0.12") + watch(every=100) + "run 200", **files(2, whole=True)).frames()
+    """The same with its mirror image instead of the plane: the same motion of bodies and water, to
+    round-off. The water sticks to the bodies."""
+    b = run(tmp_path, deck(2, style, plane="xlo -0.12") + watch(every=100) + "run 200",
+            **files(2, whole=True)).frames()
     for half, whole in zip(one_rank(2, style), b):
         n = len(half["id"])
-        x, v = (np.abs(half.vector(q) - whole.vector(q)[:n]).max() for q in (("x", "y"), ("vx", "vy")))
+        x, v = (np.abs(half.vector(q) - whole.vector(q)[:n]).max()
+                for q in (("x", "y"), ("vx", "vy")))
         print(f"in water: apart {x:.1e} m, {v:.1e} m/s")
         assert x < 1e-12 and v < 1e-9
 
@@ -254,20 +297,26 @@ THIN = 2e-5    # m/s: past what is thin no image is looked for
 ])
 @pytest.mark.parametrize("n, axes", [([6, 6], (0,)), ([5, 6], (0, 1)), ([5, 4, 4], (0,))])
 def test_half_in_viscous_water_is_the_whole(n, axes, form, density, law, bound):
-    """Water sticks to a body two particles thick: the mean velocity around these is of the water on both sides, beyond the plane, too. Velocities after 20 steps,
-    to round-off; without the images of water, or with its own velocity mirrored, they differed by 1 to 4 parts in a thousand. Shear rates of the first state alike."""
+    """Water sticks to a body two particles thick: the mean velocity around these is of the water on
+    both sides, beyond the plane, too. Velocities after 20 steps, to round-off; without the images
+    of water, or with its own velocity mirrored, they differed by 1 to 4 parts in a thousand. Shear
+    rates of the first state alike."""
     x, random = lattice(n, DX), np.random.default_rng(4)
     body = (x[:, 0] < DX) & (x[:, 1] < 4 * DX)
     v = random.uniform(-0.3, 0.3, x.shape) * (np.arange(3) < len(n))
     x += random.uniform(-0.1, 0.1, x.shape) * DX * (np.arange(3) < len(n)) * ~body[:, None]
-    planes = "fix planes all fsi/wall/mirror " + " ".join(f"{'xyz'[a]}lo 0 symmetry yes" for a in axes)
+    planes = "fix planes all fsi/wall/mirror " + " ".join(f"{'xyz'[a]}lo 0 symmetry yes"
+                                                          for a in axes)
     ends, rates = [], []
     for whole in (False, True):
         copies = 2**len(axes) if whole else 1
         X, u = (mirrored(of, axes if whole else ()) for of in (x, v))
         kind = np.tile(body, copies).astype(int)
-        with Scene(X, u, dim=len(n), dx=DX, type=1 + kind, mol=kind, materials=(f"fluid rho 1000 {law}", RUBBER), solid_style="fsi/solid/tl", fluid=f"sound 10 {form}",
-                   density=density, dt=2e-5, box=([-0.2] * 3, [0.2] * 3), commands=["compute rate all fsi/atom shear/rate", *([] if whole else [planes])]) as s:
+        with Scene(X, u, dim=len(n), dx=DX, type=1 + kind, mol=kind,
+                   materials=(f"fluid rho 1000 {law}", RUBBER), solid_style="fsi/solid/tl",
+                   fluid=f"sound 10 {form}",
+                   density=density, dt=2e-5, box=([-0.2] * 3, [0.2] * 3), commands=[
+                       "compute rate all fsi/atom shear/rate", *([] if whole else [planes])]) as s:
             s.run()
             rates.append(s.compute("rate", columns=False)[:len(x)])
             s.run(20)
@@ -278,7 +327,7 @@ def test_half_in_viscous_water_is_the_whole(n, axes, form, density, law, bound):
     close(*rates, 10 * bound)
 
 
-# ---- what is refused -------------------------------------------------------------------------------------------------------------
+# ---- what is refused -----------------------------------------------------------------------------
 
 PLANE = "fix planes all fsi/wall/mirror xlo 0 symmetry yes"
 
@@ -299,19 +348,23 @@ PLANE = "fix planes all fsi/wall/mirror xlo 0 symmetry yes"
 def test_refused(x, commands, options, message):
     X = lattice([4, 4], DX) + [0.0 if x is None else (x - 0.5) * DX, 0, 0]
     with pytest.raises(Exception, match=message):
-        with Scene(X, dx=DX, **{"materials": (RUBBER,), "solid_style": "fsi/solid/tl", **options}, commands=commands, box=([-0.3] * 3, [0.3] * 3)) as s:
+        with Scene(X, dx=DX, **{"materials": (RUBBER,), "solid_style": "fsi/solid/tl", **options},
+                   commands=commands, box=([-0.3] * 3, [0.3] * 3)) as s:
             s.run()
 
 
 def test_planes_stay_as_bonds_were_made():
-    """A plane that comes later, goes, or moves is refused: the bonds of the reference are what they are. Out of its group a body is free."""
+    """A plane that comes later, goes, or moves is refused: the bonds of the reference are what they
+    are. Out of its group a body is free."""
     x = lattice([4, 4], DX)
-    with Scene(x, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl", box=([-0.3] * 3, [0.3] * 3)) as s:
+    with Scene(x, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl",
+               box=([-0.3] * 3, [0.3] * 3)) as s:
         s.run()
         s.run_lines(PLANE)
         with pytest.raises(Exception, match="symmetry xlo 0: the bonds"):
             s.run()
-    with Scene(x, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl", commands=[PLANE], box=([-0.3] * 3, [0.3] * 3)) as s:
+    with Scene(x, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl", commands=[PLANE],
+               box=([-0.3] * 3, [0.3] * 3)) as s:
         s.run(5)
         s.run_lines("unfix planes", PLANE)
         s.run(5)
@@ -322,6 +375,7 @@ def test_planes_stay_as_bonds_were_made():
     v[:, 0] = -0.1
     ends = []
     for plane in ([], ["group none empty", PLANE.replace(" all ", " none ")]):
-        with Scene(x, v, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl", commands=plane, box=([-0.3] * 3, [0.3] * 3)) as s:
+        with Scene(x, v, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl",
+                   commands=plane, box=([-0.3] * 3, [0.3] * 3)) as s:
             ends.append(s.run(50).get("x"))
     assert np.array_equal(*ends)

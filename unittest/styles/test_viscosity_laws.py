@@ -1,4 +1,5 @@
-"""Fluids whose viscosity depends on the shear rate, and the implicit viscous step: gradients, laws, channels, stopping."""
+"""Fluids whose viscosity depends on the shear rate, and the implicit viscous step: gradients, laws,
+channels, stopping."""
 
 import math
 
@@ -10,7 +11,8 @@ LAWS = {
     "power 2 0.5 viscosity/limits 0.1 30": lambda r: min(max(2 * r**-0.5, 0.1), 30),
     "power 2 1.5": lambda r: 2 * r**0.5,
     "carreau/yasuda 5 0.5 2 0.4 1.5": lambda r: 0.5 + 4.5 * (1 + (2 * r)**1.5)**(-0.6 / 1.5),
-    "herschel/bulkley 3 2 0.7 10 viscosity/limits 0 1e6": lambda r: 3 * (1 - math.exp(-10 * r)) / r + 2 * r**-0.3,
+    "herschel/bulkley 3 2 0.7 10 viscosity/limits 0 1e6": lambda r: 3 * (1 - math.exp(-10 * r)) / r
+    + 2 * r**-0.3,
     "viscosity 0.7": lambda r: 0.7,
 }
 
@@ -47,9 +49,11 @@ def state(folder, law, dim, L, wall="", ranks=1, n=6, more=""):
     """Columns of the dump of a shaken block with the velocity L.x."""
     x, _ = cloud([n] * dim, 0.01)
     axes = [" + ".join(f"({L[a][b]!r})*{'xyz'[b]}" for b in range(3)) for a in range(3)]
-    text = FIELD.format(dim=dim, law=law, wall=wall, more=more, vx=axes[0], vy=axes[1], vz=axes[2] if dim == 3 else "0", velocity="v_vz" if dim == 3 else "NULL",
+    text = FIELD.format(dim=dim, law=law, wall=wall, more=more, vx=axes[0], vy=axes[1],
+                        vz=axes[2] if dim == 3 else "0", velocity="v_vz" if dim == 3 else "NULL",
                         walls="f f f" if dim == 3 else "f f p")
-    run(folder, text, ranks, cloud_data=particles(x, box=[(-0.05, 0.15)] * dim + [(-0.005, 0.005)] * (3 - dim)))
+    run(folder, text, ranks,
+        cloud_data=particles(x, box=[(-0.05, 0.15)] * dim + [(-0.005, 0.005)] * (3 - dim)))
     return table(folder / "end.dump")
 
 
@@ -57,8 +61,10 @@ def state(folder, law, dim, L, wall="", ranks=1, n=6, more=""):
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("law", LAWS)
 def test_linear_flow(tmp_path, law, dim, ranks):
-    """Gradients of a linear field are exact on any particles, also at their surface; so are rate, viscosity and stress."""
-    L = np.array([[1.3, -2.0, 0.4], [0.7, -0.6, 1.1], [-0.3, 0.9, -0.7]]) * np.array([[1, 1, dim == 3]] * 2 + [[dim == 3] * 3])
+    """Gradients of a linear field are exact on any particles, also at their surface; so are rate,
+    viscosity and stress."""
+    L = np.array([[1.3, -2.0, 0.4], [0.7, -0.6, 1.1], [-0.3, 0.9, -0.7]]) * np.array(
+        [[1, 1, dim == 3]] * 2 + [[dim == 3] * 3])
     D = 0.5 * (L + L.T)
     rate = math.sqrt(2 * (D**2).sum())
     found = state(tmp_path, law, dim, L, ranks=ranks)
@@ -73,21 +79,25 @@ def test_linear_flow(tmp_path, law, dim, ranks):
 
 def test_eddies(tmp_path):
     """Smagorinsky's viscosity, rho (C_s dx)^2 times the rate, is added to the fluid's."""
-    found = state(tmp_path, "viscosity 0.7", 2, [[0, 3.0, 0], [0, 0, 0], [0, 0, 0]], more="smagorinsky 0.15")
+    found = state(tmp_path, "viscosity 0.7", 2, [[0, 3.0, 0], [0, 0, 0], [0, 0, 0]],
+                  more="smagorinsky 0.15")
     np.testing.assert_allclose(found[:, 5], 0.7 + 1000 * (0.15 * 0.01)**2 * 3.0, rtol=1e-8)
 
 
 def test_shear_at_a_wall(tmp_path):
-    """Beyond a no-slip wall fluid has the velocity of its mirror image: shear along it stays exact, with the wall's own velocity."""
-    found = state(tmp_path, "power 2 1.5", 2, [[0, 3.0, 0], [0, 0, 0], [0, 0, 0]], "fix w all fsi/wall/mirror ylo -0.005 slip no velocity -0.015 0 0")
+    """Beyond a no-slip wall fluid has the velocity of its mirror image: shear along it stays exact,
+    with the wall's own velocity."""
+    found = state(tmp_path, "power 2 1.5", 2, [[0, 3.0, 0], [0, 0, 0], [0, 0, 0]],
+                  "fix w all fsi/wall/mirror ylo -0.005 slip no velocity -0.015 0 0")
     np.testing.assert_allclose(found[:, 4], 3.0, rtol=1e-8)
 
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("walls", ["", "slip no", "slip yes"])
 def test_shear_of_a_wave(walls, dim):
-    """Of v_x = sin ky the kernel leaves a part G of the rate, and S of a mean; deconvolution makes of it G (2 - S), on the lattice to round-off. Between
-    no-slip mirrors the wave goes on as it is, between those that slip cos ky does. What it leaves is of second order in 1 - G.
+    """Of v_x = sin ky the kernel leaves a part G of the rate, and S of a mean; deconvolution makes
+    of it G (2 - S), on the lattice to round-off. Between no-slip mirrors the wave goes on as it is,
+    between those that slip cos ky does. What it leaves is of second order in 1 - G.
     """
     n = (7, 16) if dim == 2 else (7, 16, 7)
     k = math.pi / 8
@@ -96,7 +106,9 @@ def test_shear_of_a_wave(walls, dim):
     v[:, 0] = (np.cos if "yes" in walls else np.sin)(k * x[:, 1])
     box, periodic = ((0, 0, 0), (7, 16, 7)), "p f p" if walls else "p p p"
     commands = [f"fix w all fsi/wall/mirror ylo 0 {walls} yhi 16 {walls}"] if walls else []
-    with Scene(x, v, dim=dim, box=box, boundary=periodic, materials=("fluid rho 1000 viscosity 1",), fluid="laminar/visc", commands=["compute of all fsi/atom shear/rate", *commands]) as s:
+    with Scene(x, v, dim=dim, box=box, boundary=periodic,
+               materials=("fluid rho 1000 viscosity 1",), fluid="laminar/visc",
+               commands=["compute of all fsi/atom shear/rate", *commands]) as s:
         s.run()
         rate = s.compute("of", columns=False)
         steps = np.array(np.meshgrid(*[np.arange(-3, 4.0)] * dim)).reshape(dim, -1)
@@ -136,14 +148,17 @@ write_dump all custom end.dump id x y vx
 IMPLICIT = "laminar/implicit yes"
 
 
-def channel(folder, law, rows=20, time=1.5, form=IMPLICIT, drive="fix 3 all gravity 1 vector 1 0 0", sound=3, height=1.0, ranks=1):
-    run(folder, CHANNEL.format(law=law, rows=rows, time=time, form=form, drive=drive, sound=sound, height=height), ranks)
+def channel(folder, law, rows=20, time=1.5, form=IMPLICIT, drive="fix 3 all gravity 1 vector 1 0 0",
+            sound=3, height=1.0, ranks=1):
+    run(folder, CHANNEL.format(law=law, rows=rows, time=time, form=form, drive=drive, sound=sound,
+                               height=height), ranks)
     found = table(folder / "end.dump")
     return found[:, 2], found[:, 3]
 
 
 def steady(eta, y):
-    """Velocity at y of a channel from 0 to 1 under a body force of 1: the rate that has the stress 1/2-y, by bisection, summed up."""
+    """Velocity at y of a channel from 0 to 1 under a body force of 1: the rate that has the stress
+    1/2-y, by bisection, summed up."""
     z = np.linspace(0, 0.5, 2001)
     low, high = np.zeros_like(z), np.full_like(z, 10.0)
     for _ in range(60):
@@ -159,7 +174,8 @@ def papanastasiou(tau, m):
 
 
 @pytest.mark.parametrize("law, eta, time, bound", [
-    # measured with 20 rows, mean over largest: 0.18, 0.37, 0.28, 0.48 %; with 40 a third. Without deconvolution 0.75, 0.56, 0.15, 1.2 %
+    # measured with 20 rows, mean over largest: 0.18, 0.37, 0.28, 0.48 %; with 40 a third. Without
+    # deconvolution 0.75, 0.56, 0.15, 1.2 %
     ("power 1 0.5 viscosity/limits 0 100", lambda r: min(max(r, 1e-12)**-0.5, 100), 1.5, 0.005),
     ("power 1 2", lambda r: r, 3, 0.005),
     ("herschel/bulkley 0.1 1 1 100", papanastasiou(0.1, 100), 1.5, 0.005),
@@ -173,7 +189,8 @@ def test_channel(tmp_path, law, eta, time, bound):
 
 
 def test_order(tmp_path):
-    """The error of a yield stress falls with the spacing: 20 to 40 rows, measured 0.48 to 0.15 %."""
+    """The error of a yield stress falls with the spacing: 20 to 40 rows, measured 0.48 to 0.15
+    %."""
     errors = []
     for rows in (20, 40):
         folder = tmp_path / str(rows)
@@ -200,16 +217,20 @@ def test_implicit_powers_without_newton(tmp_path):
     taken = []
     for newton in ("on", "off"):
         (folder := tmp_path / newton).mkdir()
-        save = 'compute e all fsi/energy\nfix save all ave/time 1 1 1 c_e[6] file taken.txt format " %.15g"'
+        save = ('compute e all fsi/energy\nfix save all ave/time 1 1 1 c_e[6] file taken.txt '
+                'format " %.15g"')
         drive = f"fix 3 all gravity 1 vector 1 0 0\n{save}"
-        run(folder, f"newton {newton}\n" + CHANNEL.format(law="viscosity 1", rows=6, time=0.1, form=IMPLICIT, drive=drive, sound=3, height=1.0))
+        run(folder, f"newton {newton}\n" + CHANNEL.format(law="viscosity 1", rows=6, time=0.1,
+                                                          form=IMPLICIT, drive=drive, sound=3,
+                                                          height=1.0))
         taken.append(np.loadtxt(folder / "taken.txt")[-1, 1])
     assert taken[0] > 1e-3 and taken[1] == pytest.approx(taken[0], rel=1e-10)
 
 
 def stopping(tau, m, parts, rows=200, mu=1.0):
-    """When the flow of a channel of half width 1, after its pressure gradient of 1 is turned off, is these parts of the exact Bingham one: finite
-    differences, implicit in time, in the half of it."""
+    """When the flow of a channel of half width 1, after its pressure gradient of 1 is turned off,
+    is these parts of the exact Bingham one: finite differences, implicit in time, in the half of
+    it."""
     y = (np.arange(rows) + 0.5) / rows
     edge = np.arange(rows + 1) / rows
     u = np.where(y < tau, 0.5 * (1 - tau)**2, 0.5 * ((1 - tau)**2 - (y - tau)**2))
@@ -230,12 +251,17 @@ def stopping(tau, m, parts, rows=200, mu=1.0):
 
 
 def test_stopping(tmp_path):
-    """A Bingham fluid stops in a finite time (Glowinski 1984): to 0.1 and 0.01 of the flow after 0.1298 and 0.1474 rho H^2/mu with phi = 0.5, where a
-    Newtonian one has a third of its flow left. 40 rows; the regularized law's own times are the reference, within 3 %. The error is of first order in the step, here 1 % of the time.
+    """A Bingham fluid stops in a finite time (Glowinski 1984): to 0.1 and 0.01 of the flow after
+    0.1298 and 0.1474 rho H^2/mu with phi = 0.5, where a Newtonian one has a third of its flow left.
+    40 rows; the regularized law's own times are the reference, within 3 %. The error is of first
+    order in the step, here 1 % of the time.
     """
-    profile = "variable z atom abs(y-1)\nvariable u atom 0.5*(0.25-(v_z>0.5)*(v_z-0.5)^2)\nvelocity all set v_u 0 0\n"
-    flux = 'compute mean all reduce ave vx\nvariable mean equal c_mean\nfix 5 all print 2 "${time} ${mean}" file flow.txt screen no\n'
-    run(tmp_path, CHANNEL.format(law="herschel/bulkley 0.5 1 1 100", rows=40, time=0.16, form=IMPLICIT, drive=profile + flux, sound=20, height=2.0))
+    profile = ("variable z atom abs(y-1)\nvariable u atom 0.5*(0.25-(v_z>0.5)*(v_z-0.5)^2)\n"
+               "velocity all set v_u 0 0\n")
+    flux = ('compute mean all reduce ave vx\nvariable mean equal c_mean\n'
+            'fix 5 all print 2 "${time} ${mean}" file flow.txt screen no\n')
+    run(tmp_path, CHANNEL.format(law="herschel/bulkley 0.5 1 1 100", rows=40, time=0.16,
+                                 form=IMPLICIT, drive=profile + flux, sound=20, height=2.0))
     t, q = np.loadtxt(tmp_path / "flow.txt").T
     q /= q[0]
     expected = stopping(0.5, 100, (0.1, 0.01))
@@ -253,17 +279,22 @@ def test_stopping(tmp_path):
     ("power 1 0.5 viscosity/limits 3 2", "viscosity/limits largest"),
 ])
 def test_bad_laws(tmp_path, line, message):
-    done = lammps(tmp_path, CHANNEL.format(law=line, rows=4, time=0, form="", drive="", sound=3, height=1))
+    done = lammps(tmp_path,
+                  CHANNEL.format(law=line, rows=4, time=0, form="", drive="", sound=3, height=1))
     assert done.status != 0 and message in done.errors[0]
 
 
-@pytest.mark.parametrize("law, idle", [("power 1 2", False), ("herschel/bulkley 0 1 1.5 1", False), ("viscosity 0", True)])
+@pytest.mark.parametrize("law, idle", [("power 1 2", False), ("herschel/bulkley 0 1 1.5 1", False),
+                                       ("viscosity 0", True)])
 def test_idle_viscosity(tmp_path, law, idle):
     """A fluid that thickens has no viscosity at rest, and is viscous."""
-    done = lammps(tmp_path, CHANNEL.format(law=law, rows=4, time=0, form="laminar/visc", drive="", sound=3, height=1))
+    done = lammps(tmp_path, CHANNEL.format(law=law, rows=4, time=0, form="laminar/visc", drive="",
+                                           sound=3, height=1))
     assert done.status == 0 and ("laminar/visc has nothing to act on" in done.output) == idle
 
 
 def test_implicit_needs_the_plain_form(tmp_path):
-    done = lammps(tmp_path, CHANNEL.format(law="viscosity 1", rows=4, time=0, form="laminar/visc/central laminar/implicit yes", drive="", sound=3, height=1))
+    done = lammps(tmp_path, CHANNEL.format(law="viscosity 1", rows=4, time=0,
+                                           form="laminar/visc/central laminar/implicit yes",
+                                           drive="", sound=3, height=1))
     assert done.status != 0 and "laminar/implicit requires laminar/visc" in done.errors[0]

@@ -1,4 +1,5 @@
-"""Walls made of particles: the law against numpy, then hydrostatics, pistons, Couette flow, floating bodies, leaks."""
+"""Walls made of particles: the law against numpy, then hydrostatics, pistons, Couette flow,
+floating bodies, leaks."""
 
 import re
 
@@ -10,7 +11,8 @@ from scenes import WATER, Kernel, close, difference, differing, lammps, lattice,
 from fsi import dump, paths
 
 DX, C, G = 0.01, 20.0, 9.81
-MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500", as_stiff="fluid rho 1000 sound 14.142135623730951",
+MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500",
+                      as_stiff="fluid rho 1000 sound 14.142135623730951",
                       wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
 
 
@@ -18,7 +20,8 @@ def data(x, kind, v=None, box=((-0.2,) * 3, (0.6,) * 3), rho=0.0):
     return particles(x, kind, v=v, rho=rho, box=np.transpose(box))
 
 
-def deck(fluid="artificial/visc 0.05 0 density/diffusion 0.1", names="water wall", wall="", more="", dim=2, boundary="f f p", newton="on",
+def deck(fluid="artificial/visc 0.05 0 density/diffusion 0.1", names="water wall", wall="", more="",
+         dim=2, boundary="f f p", newton="on",
          gravity=G, dt=1e-4, fsi="", coeff=True):
     return start(f"newton {newton}", dim=dim, boundary=boundary) + (f"""read_data scene.data
 pair_style fsi/fluid sound {C} {fluid}
@@ -39,7 +42,8 @@ compute p all fsi/atom p rho
 
 def shot(every=1, file="atoms.dump"):
     return (f"dump d all custom {every} {file} id type x y z vx vy vz fx fy fz mass c_p[1] c_p[2]\n"
-            "dump_modify d sort id time yes format float %.17g colname c_p[1] p colname c_p[2] rho\n")
+            "dump_modify d sort id time yes format float %.17g colname c_p[1] p colname c_p[2] "
+            "rho\n")
 
 
 def go(tmp_path, text, rows, ranks=1):
@@ -66,7 +70,8 @@ BOX2 = ((-0.1, -0.1, -DX / 2), (0.5, 0.5, DX / 2))
 
 
 def law(frame, acceleration, dim, slip, eta, dt, guard, linear, omega):
-    """Pressures of the walls and forces on all particles by brute force, at the middle of the step; omega: of the wall"""
+    """Pressures of the walls and forces on all particles by brute force, at the middle of the step;
+    omega: of the wall"""
     k, eos = Kernel("wendland", dim, 1.5 * DX), C**2
     wall = frame["type"] == 2
     v, m, rho = frame.vector(("vx", "vy", "vz")), frame["mass"], frame["rho"].copy()
@@ -85,10 +90,12 @@ def law(frame, acceleration, dim, slip, eta, dt, guard, linear, omega):
         pw = np.where(total > 0, (W * (p[None] + rise)).sum(1) / total, 0.0)
         way = W @ x / total[:, None] - x    # from the wall to the fluid around it
         vw = np.where(total[:, None] > 0, 2 * v + np.cross(omega, way) - W @ v / total[:, None], v)
-    for w in np.flatnonzero(linear & wall & (total > 0)):    # weighted least squares for a linear pressure
+    # weighted least squares for a linear pressure
+    for w in np.flatnonzero(linear & wall & (total > 0)):
         weights, D = W[w] / total[w], d[w, :, :dim]
         cov = np.cov(D.T, aweights=weights, ddof=0)
-        slope = np.cov(D.T, p + (D @ gravity[:dim]) * rho, aweights=weights, ddof=0)[-1, :-1] - 1000.0 * cov @ acceleration[w, :dim]
+        slope = np.cov(D.T, p + (D @ gravity[:dim]) * rho, aweights=weights,
+                       ddof=0)[-1, :-1] - 1000.0 * cov @ acceleration[w, :dim]
         pw[w] -= weights @ D @ np.linalg.solve(cov + 0.005 * DX**2 * np.eye(dim), slope)
     p[wall] = np.maximum(pw, 0.0)[wall]
     rho = np.where(wall, 1000.0 + p / eos, rho)
@@ -115,8 +122,8 @@ def law(frame, acceleration, dim, slip, eta, dt, guard, linear, omega):
 @pytest.mark.parametrize("pressure", ["mean", "linear"])
 @pytest.mark.parametrize("motion", ["wiggle", "rotate"])
 def test_law(tmp_path, motion, dim, slip, pressure):
-    """Every term, with a wall that accelerates or turns. Round-off of the sums over some 30 neighbors, 1e-12, times what a dump of the
-    fluid after the step loses when it is taken back."""
+    """Every term, with a wall that accelerates or turns. Round-off of the sums over some 30
+    neighbors, 1e-12, times what a dump of the fluid after the step loses when it is taken back."""
     random = np.random.default_rng(3)
     n = (8, 9) if dim == 2 else (5, 6, 5)
     x = lattice(n, DX)
@@ -127,8 +134,10 @@ def test_law(tmp_path, motion, dim, slip, pressure):
     rho = np.where(kind == 1, 1000.0 * (1 + random.uniform(-0.002, 0.008, len(x))), 0.0)
     dt, guard = 2e-4, 1.0
     period, axis = 0.3, np.array([0.0, 0.0, 1.0] if dim == 2 else [2 / 3, -1 / 3, 2 / 3])
-    move = dict(wiggle=f"wiggle 0.002 0.003 {'NULL' if dim == 2 else 0.001} 0.02", rotate=f"rotate 0.05 0.3 0 {' '.join(map(str, axis))} {period}")[motion]
-    text = deck("laminar/visc", "oil wall", f"slip {slip} guard {guard} pressure {pressure}", f"fix m wall move {move}\n{shot()}run 3", dim,
+    move = dict(wiggle=f"wiggle 0.002 0.003 {'NULL' if dim == 2 else 0.001} 0.02",
+                rotate=f"rotate 0.05 0.3 0 {' '.join(map(str, axis))} {period}")[motion]
+    text = deck("laminar/visc", "oil wall", f"slip {slip} guard {guard} pressure {pressure}",
+                f"fix m wall move {move}\n{shot()}run 3", dim,
                 "f f p" if dim == 2 else "f f f", dt=dt)
     box = BOX2 if dim == 2 else ((-0.2,) * 3, (0.6,) * 3)
     frames = dump.read(go(tmp_path, text, data(x, kind, v, box, rho)).folder / "atoms.dump")
@@ -136,7 +145,8 @@ def test_law(tmp_path, motion, dim, slip, pressure):
     speed = ("vx", "vy", "vz")
     a = (last.vector(speed) - before.vector(speed)) / dt * (last["type"] == 2)[:, None]
     assert np.abs(a).max() > 3 * G  # it does accelerate
-    p, force = law(last, a, dim, slip == "yes", 5.0, dt, guard, pressure == "linear", axis * (2 * np.pi / period if motion == "rotate" else 0))
+    p, force = law(last, a, dim, slip == "yes", 5.0, dt, guard, pressure == "linear",
+                   axis * (2 * np.pi / period if motion == "rotate" else 0))
     wall = last["type"] == 2
     force[~wall] += last["mass"][~wall, None] * np.array([0.0, -G, 0.0])
     assert (p[wall] > 0).sum() > 10 and np.ptp(p[wall]) > 100
@@ -152,9 +162,11 @@ def test_acceleration_of_a_float_where_the_time_step_changes(tmp_path, after):
     kind = np.where(x[:, 1] < 4 * DX, 2, 1)
     x[:, :2] += random.uniform(-0.15, 0.15, (len(x), 2)) * DX
     rho = np.where(kind == 1, 1000.0 * (1 + random.uniform(-0.002, 0.008, len(x))), 0.0)
-    text = deck("artificial/visc 0 0", "oil wall", "slip yes guard 0", f"fix push wall addforce 2 5 0\nfix m wall rigid single torque 1 off off off\n{shot()}run 2\n"
+    text = deck("artificial/visc 0 0", "oil wall", "slip yes guard 0", "fix push wall addforce 2 "
+                f"5 0\nfix m wall rigid single torque 1 off off off\n{shot()}run 2\n"
                 f"timestep {after * dt}\nrun 1", dt=dt)
-    before, last = dump.read(go(tmp_path, text, data(x, kind, None, BOX2, rho)).folder / "atoms.dump")[-2:]
+    before, last = dump.read(go(tmp_path, text, data(x, kind, None, BOX2, rho)).folder
+                             / "atoms.dump")[-2:]
     wall = last["type"] == 2
     a = before.vector(("fx", "fy", "fz"))[wall].sum(0) / before["mass"][wall].sum() * wall[:, None]
     assert np.abs(a).max() > 2 * G
@@ -166,7 +178,8 @@ def test_acceleration_of_a_float_where_the_time_step_changes(tmp_path, after):
 
 
 def test_no_acceleration_from_a_wall_of_long_ago(tmp_path):
-    """A wall that is given again in the last run's place knows its velocity; one that had the ID runs ago is a new one, as under any other ID."""
+    """A wall that is given again in the last run's place knows its velocity; one that had the ID
+    runs ago is a new one, as under any other ID."""
     random = np.random.default_rng(3)
     x = lattice((8, 9), DX)
     kind = np.where(x[:, 1] < 4 * DX, 2, 1)
@@ -174,15 +187,19 @@ def test_no_acceleration_from_a_wall_of_long_ago(tmp_path):
     rho = np.where(kind == 1, 1000.0 * (1 + random.uniform(-0.002, 0.008, len(x))), 0.0)
     wall, found = "wall fsi/wall/particle slip yes guard 0", []
     for k, name in enumerate(("walls", "fresh")):
-        text = deck("artificial/visc 0 0", "oil wall", "slip yes guard 0", f"fix push wall addforce 2 5 0\nfix m wall rigid single torque 1 off off off\n{shot()}run 2\n"
-                    f"unfix walls\nfix other {wall}\nrun 5\nunfix other\nfix {name} {wall}\nrun 1", dt=2e-4)
+        text = deck("artificial/visc 0 0", "oil wall", "slip yes guard 0", "fix push wall "
+                    f"addforce 2 5 0\nfix m wall rigid single torque 1 off off off\n{shot()}run 2\n"
+                    f"unfix walls\nfix other {wall}\nrun 5\nunfix other\nfix {name} {wall}\nrun 1",
+                    dt=2e-4)
         (folder := tmp_path / str(k)).mkdir()
-        found.append(dump.read(go(folder, text, data(x, kind, None, BOX2, rho)).folder / "atoms.dump")[-1]["p"])
+        found.append(dump.read(go(folder, text, data(x, kind, None, BOX2, rho)).folder
+                               / "atoms.dump")[-1]["p"])
     assert np.array_equal(*found)
 
 
 def test_pressure_linear(tmp_path):
-    """On the surface of a disc in a fluid whose pressure has a gradient: as in the fluid. A mean has the pressure of a place 1.3 dx outside."""
+    """On the surface of a disc in a fluid whose pressure has a gradient: as in the fluid. A mean
+    has the pressure of a place 1.3 dx outside."""
     n, radius = 40, 6 * DX
     x = lattice((n, n), DX)
     center = 0.5 * n * DX
@@ -194,28 +211,35 @@ def test_pressure_linear(tmp_path):
 
     def errors(wall):
         text = deck("tension yes", wall=wall, gravity=0, dt=1e-9, more=f"{shot()}run 1")
-        frame = dump.read(go(tmp_path, text, data(x, kind, None, BOX2, rho)).folder / "atoms.dump")[-1]
+        frame = dump.read(go(tmp_path, text, data(x, kind, None, BOX2, rho)).folder
+                          / "atoms.dump")[-1]
         skin = (kind == 2) & (r > radius - DX)
         return (frame["p"] - exact)[skin] / (np.hypot(5000.0, 3000.0) * DX)
 
-    # the deepest, 1 dx inside, see one row, whose variance across, 0.03 dx^2, has 0.005 added: 14 % of 1.3 dx
+    # the deepest, 1 dx inside, see one row, whose variance across, 0.03 dx^2, has 0.005 added: 14 %
+    # of 1.3 dx
     found, of_means = (np.abs(errors(wall)) for wall in ("pressure linear", ""))
-    print(f"pressure on a disc over its gradient times dx: linear {found.mean():.3f}, largest {found.max():.3f}; mean {of_means.mean():.3f}, {of_means.max():.3f}")
+    print(f"pressure on a disc over its gradient times dx: linear {found.mean():.3f}, largest "
+          f"{found.max():.3f}; mean {of_means.mean():.3f}, {of_means.max():.3f}")
     assert found.max() < 0.2 and found.mean() < 0.05
     assert of_means.max() > 1.0
     page = " ".join((paths.ROOT / "doc/src/fix_fsi_wall_particle.rst").read_text().split())
-    assert f"the mean error over the gradient times dx is {found.mean():.2f}, with *mean* {of_means.mean():.2f}" in page
+    assert (f"the mean error over the gradient times dx is {found.mean():.2f}, with *mean* "
+            f"{of_means.mean():.2f}" in page)
 
 
 def test_pressure_linear_on_a_wall_that_accelerates(tmp_path):
-    """What is on it is fluid: the density of the wall's material, and of a fluid that is nowhere, say nothing."""
+    """What is on it is fluid: the density of the wall's material, and of a fluid that is nowhere,
+    say nothing."""
     x = lattice((8, 9), DX)
     kind = np.where(x[:, 1] < 4 * DX, 2, 1)
     x[:, :2] += np.random.default_rng(3).uniform(-0.15, 0.15, (len(x), 2)) * DX
     found = []
-    for names in ("light wall light", "light buoy light", "light wall water", "light wall as_stiff"):
+    for names in ("light wall light", "light buoy light", "light wall water",
+                  "light wall as_stiff"):
         (folder := tmp_path / names.replace(" ", "-")).mkdir()
-        text = deck("tension yes", names, "pressure linear", f"fix m wall fsi/move wiggle 0.002 0.001 0 0.01 units box\n{shot()}run 5")
+        text = deck("tension yes", names, "pressure linear",
+                    f"fix m wall fsi/move wiggle 0.002 0.001 0 0.01 units box\n{shot()}run 5")
         rows = particles(x, kind, rho=0.0, box=np.transpose(BOX2), types=3)
         found.append(dump.read(go(folder, text, rows).folder / "atoms.dump")[-1]["p"][kind == 2])
     assert np.ptp(found[0]) > 100
@@ -262,8 +286,9 @@ run 100000
 
 @pytest.mark.parametrize("kernel", ["quintic 1", "wendland 1.5"])
 def test_liquid_that_turns_in_a_packed_vessel(tmp_path, kernel):
-    """Without friction it turns on as a rigid body: its energy does not grow, and pressure falls by rho omega^2 R^2/2 to the middle. Walls
-    with the mean of its pressures let it in, its own falls, and it is torn off: energy grew to 2.3 times (quintic) that of the start."""
+    """Without friction it turns on as a rigid body: its energy does not grow, and pressure falls by
+    rho omega^2 R^2/2 to the middle. Walls with the mean of its pressures let it in, its own falls,
+    and it is torn off: energy grew to 2.3 times (quintic) that of the start."""
     grown, slope = {}, {}
     for wall in ("", "pressure mean"):
         (folder := tmp_path / (wall or "auto")).mkdir()
@@ -271,7 +296,8 @@ def test_liquid_that_turns_in_a_packed_vessel(tmp_path, kernel):
         energy = np.loadtxt(folder / "energy.txt")[:, 1]
         grown[wall] = energy.max() / energy[0] - 1
         frames = dump.read(folder / "water.dump")
-        r2, p = (np.concatenate(of) for of in zip(*((f["x"]**2 + f["y"]**2, f["p"] - f["p"].mean()) for f in frames)))
+        r2, p = (np.concatenate(of)
+                 for of in zip(*((f["x"]**2 + f["y"]**2, f["p"] - f["p"].mean()) for f in frames)))
         slope[wall] = np.polyfit(r2, p, 1)[0] / 2000
     print(f"{kernel}: energy has grown by {grown}, pressure over r^2 {slope}")
     assert grown[""] < 0.002 and slope[""] == pytest.approx(1, abs=0.1)
@@ -279,7 +305,8 @@ def test_liquid_that_turns_in_a_packed_vessel(tmp_path, kernel):
 
 
 def test_no_guard_where_water_has_tension(tmp_path):
-    """Water that has no free surface passes walls nearer than 0.9 dx, and a push would be noise: by default it feels the same forces as with guard 0."""
+    """Water that has no free surface passes walls nearer than 0.9 dx, and a push would be noise: by
+    default it feels the same forces as with guard 0."""
     x, kind = tank(6, 6)
     x[kind == 1, 1] -= 0.3 * DX  # the first row at 0.7 dx from the wall's
 
@@ -288,9 +315,11 @@ def test_no_guard_where_water_has_tension(tmp_path):
 run 0
 print "GUARDED $(f_walls)"
 """), data(x, kind, None, BOX2))
-        return value(result, "GUARDED"), dump.read(result.folder / "atoms.dump")[0].vector(("fx", "fy", "fz"))
+        return value(result, "GUARDED"), dump.read(result.folder / "atoms.dump")[0].vector(
+            ("fx", "fy", "fz"))
 
-    (none, without), (also_none, default), (some, given) = (forces(wall, "yes") for wall in ("guard 0", "", "guard 0.9"))
+    (none, without), (also_none, default), (some, given) = (
+        forces(wall, "yes") for wall in ("guard 0", "", "guard 0.9"))
     assert (none, also_none, some) == (0, 0, 6) and (default == without).all()
     # K d (1/r - 1/d) on each of the row, d = 0.9 dx
     push = (given - without)[(kind == 1) & (x[:, 1] < 0.5 * DX)]
@@ -299,8 +328,9 @@ print "GUARDED $(f_walls)"
 
 
 def test_hydrostatic(tmp_path):
-    """Weight on the floor and pressure on each wall particle that sees water. What is left after 0.6 s are slow waves of sound of a
-    per cent; the row next to the water must read rho g h of its own depth, below the floor too."""
+    """Weight on the floor and pressure on each wall particle that sees water. What is left after
+    0.6 s are slow waves of sound of a per cent; the row next to the water must read rho g h of its
+    own depth, below the floor too."""
     x, kind = tank(30, 20)
     x, kind = x[::-1], kind[::-1]
     text = deck(wall="", dt=1.5e-4, more=f"""fsi/set water hydrostatic {20 * DX}
@@ -333,8 +363,8 @@ print "LEDGER $(c_e)"
 
 
 def test_still_walls_do_no_work_and_slip(tmp_path):
-    """Water that glides along a slip wall at 1 m/s keeps its momentum (1e-3; lattices that stick would lose per cents) and the ledger closes
-    (1e-3 of its energy, first order in the step)."""
+    """Water that glides along a slip wall at 1 m/s keeps its momentum (1e-3; lattices that stick
+    would lose per cents) and the ledger closes (1e-3 of its energy, first order in the step)."""
     x = lattice((20, 14), DX)
     x[:, 1] -= 4 * DX
     kind = np.where(x[:, 1] < 0, 2, 1)
@@ -352,13 +382,15 @@ print "KE $(ke(water))"
 """)
     result = go(tmp_path, text, data(x, kind, v, ((0.0, -0.1, -DX / 2), (0.2, 0.3, DX / 2))))
     assert value(result, "SPEED") == pytest.approx(1.0, abs=1e-3)
-    assert value(result, "AFTER") == pytest.approx(value(result, "BEFORE"), abs=1e-3 * value(result, "KE"))
+    assert value(result, "AFTER") == pytest.approx(value(result, "BEFORE"),
+                                                   abs=1e-3 * value(result, "KE"))
 
 
 @pytest.mark.slow
 def test_piston(tmp_path):
-    """A side of the tank moved inwards by a third of its length, at first fast: nothing leaks, the level rises by what is displaced (half a
-    spacing), and what the wall does is what the water gets (the ledger)."""
+    """A side of the tank moved inwards by a third of its length, at first fast: nothing leaks, the
+    level rises by what is displaced (half a spacing), and what the wall does is what the water gets
+    (the ledger)."""
     x, kind = tank(30, 12, 26)
     kind[(x[:, 0] < 0) & (x[:, 1] > 0)] = 3
     text = deck("artificial/visc 0.1 0 density/diffusion 0.1", "water wall wall", dt=1.5e-4, more=f"""group piston type 3
@@ -397,8 +429,9 @@ run 4000
 
 
 def test_couette(tmp_path):
-    """Between a wall at rest and one that slides: the transient series of plane Couette flow at an eighth of the viscous time and the linear
-    profile at half of it. Ten particles across, where Adami et al. find some per cent."""
+    """Between a wall at rest and one that slides: the transient series of plane Couette flow at an
+    eighth of the viscous time and the linear profile at half of it. Ten particles across, where
+    Adami et al. find some per cent."""
     n, height, speed = 10, 10 * DX, 0.1
     x = lattice((12, n + 8), DX)
     x[:, 1] -= 4 * DX
@@ -411,24 +444,30 @@ velocity lid set {speed} 0 0 units box
 fix m lid move linear {speed} 0 0
 {shot(int(round(early * viscous / dt)))}run {int(round(late * viscous / dt))}
 """)
-    frames = dump.read(go(tmp_path, text, data(x, kind, None, ((0.0, -0.1, -DX / 2), (0.12, 0.3, DX / 2)))).folder / "atoms.dump")
+    frames = dump.read(
+        go(tmp_path, text, data(x, kind, None, ((0.0, -0.1, -DX / 2), (0.12, 0.3, DX / 2)))).folder
+        / "atoms.dump")
 
     def exact(y, t):
         k = np.arange(1, 60)
-        return speed * (y / height + (2 / (k * np.pi) * (-1.0)**k * np.exp(-nu * (k * np.pi / height)**2 * t) * np.sin(np.outer(y, k) * np.pi / height)).sum(1))
+        return speed * (y / height + (2 / (k * np.pi) * (-1.0)**k
+                                      * np.exp(-nu * (k * np.pi / height)**2 * t)
+                                      * np.sin(np.outer(y, k) * np.pi / height)).sum(1))
 
     for frame in (frames[1], frames[-1]):
         water = frame["type"] == 1
         error = frame["vx"][water] - exact(frame["y"][water], frame.time)
-        print(f"Couette, t = {frame.time / viscous:.3f} H^2/nu: largest error {np.abs(error).max() / speed:.4f} U")
+        print(f"Couette, t = {frame.time / viscous:.3f} H^2/nu: largest error "
+              f"{np.abs(error).max() / speed:.4f} U")
         assert np.abs(error).max() < 0.03 * speed
 
 
 @pytest.mark.slow
 def test_turning_wall(tmp_path):
-    """Couette flow between a cylinder that turns and one at rest, 16 and 24 spacings in radius: the velocity A r + B/r that fits the water's is that of
-    the wall at its surface within 2 %, of which the curvature of r^-1 over the kernel is half. That of the wall's particles, which are half a spacing and
-    more behind, would make it 4 % less."""
+    """Couette flow between a cylinder that turns and one at rest, 16 and 24 spacings in radius: the
+    velocity A r + B/r that fits the water's is that of the wall at its surface within 2 %, of which
+    the curvature of r^-1 over the kernel is half. That of the wall's particles, which are half a
+    spacing and more behind, would make it 4 % less."""
     inner, outer, speed = 16 * DX, 24 * DX, 0.1
     x = lattice((48, 48), DX) - [24 * DX, 24 * DX, 0]
     r = np.hypot(x[:, 0], x[:, 1])
@@ -442,31 +481,37 @@ def test_turning_wall(tmp_path):
     kind = np.repeat([1, 2, 3], [len(water), sum(map(len, rings[:4])), sum(map(len, rings[4:]))])
     slope = np.array([-inner, inner * outer**2]) * speed / (outer**2 - inner**2)
     turn = lambda of: np.stack([-of[:, 1], of[:, 0], 0 * of[:, 0]], 1)    # noqa: E731
-    v = np.concatenate([turn(water) * (slope[0] + slope[1] / (water**2).sum(1, keepdims=True)), *(0 * ring for ring in rings)])
+    v = np.concatenate([turn(water) * (slope[0] + slope[1] / (water**2).sum(1, keepdims=True)),
+                        *(0 * ring for ring in rings)])
     dt, steps = 1e-4, 3000    # a quarter of the square of the gap over the viscosity
     text = deck("tension yes background 200 laminar/visc density/diffusion 0.1 shift 0.25", "oil wall wall", "slip no", boundary="f f p", gravity=0, dt=dt, more=f"""group hub type 2
 fix m hub move rotate 0 0 0 0 0 1 {2 * np.pi * inner / speed}
 {shot(steps)}run {steps}
 """)
-    frame = dump.read(go(tmp_path, text, data(np.concatenate([water, *rings]), kind, v, ((-0.3, -0.3, -DX / 2), (0.3, 0.3, DX / 2)))).folder / "atoms.dump")[-1]
+    frame = dump.read(go(tmp_path, text, data(np.concatenate([water, *rings]), kind, v,
+                                              ((-0.3, -0.3, -DX / 2), (0.3, 0.3, DX / 2)))).folder
+                      / "atoms.dump")[-1]
     x, v = frame.vector()[frame["type"] == 1], frame.vector(("vx", "vy", "vz"))[frame["type"] == 1]
     r = np.hypot(x[:, 0], x[:, 1])
     fit = np.linalg.lstsq(np.stack([r, 1 / r], 1), (turn(x) * v).sum(1) / r, rcond=None)[0]
     at = [fit @ [a, 1 / a] for a in (inner, outer)]
-    print(f"at the surfaces {at[0] / speed:.4f}, {at[1] / speed:.4f} of the velocity of the inner one")
+    print(f"at the surfaces {at[0] / speed:.4f}, {at[1] / speed:.4f} of the velocity of the inner "
+          "one")
     assert abs(at[0] - speed) < 0.02 * speed and abs(at[1]) < 0.01 * speed
 
 
 def buoy(height, width=8):
     """Water 20 deep and 30 wide, open at the top, with a body of type 3 in its middle: (x, type)"""
     x, kind = tank(30, 20, 26)
-    block = (np.abs(x[:, 0] - 0.15) < width / 2 * DX) & (x[:, 1] > height * DX) & (x[:, 1] < (height + width) * DX)
+    block = (np.abs(x[:, 0] - 0.15) < width / 2 * DX) & (x[:, 1] > height
+                                                         * DX) & (x[:, 1] < (height + width) * DX)
     kind[block & (kind == 1)] = 3
     return x, kind
 
 
 def test_archimedes(tmp_path):
-    """The force on a body held under water is the weight of the water that it displaces (2 %: a spacing has 12 % of it)."""
+    """The force on a body held under water is the weight of the water that it displaces (2 %: a
+    spacing has 12 % of it)."""
     x, kind = buoy(6)
     text = deck(names="water wall buoy", dt=1.5e-4, more=f"""group body type 3
 group tank type 2
@@ -489,11 +534,13 @@ print "FY $(f_mean[2])"
 
 @pytest.mark.slow
 def test_rigid_body_floats(tmp_path):
-    """A body of density 400 under fix rigid, let go 0.4 dx too low, settles with 0.4 of it in the water; half a spacing."""
+    """A body of density 400 under fix rigid, let go 0.4 dx too low, settles with 0.4 of it in the
+    water; half a spacing."""
     width = 10
     x, kind = tank(30, 16, 26)
     low = 12
-    block = (np.abs(x[:, 0] - 0.15) < width / 2 * DX) & (x[:, 1] > low * DX) & (x[:, 1] < (low + width) * DX)
+    block = (np.abs(x[:, 0] - 0.15) < width / 2 * DX) & (x[:, 1] > low
+                                                         * DX) & (x[:, 1] < (low + width) * DX)
     keep = ~(block & (kind == 1))
     body = lattice((width, width), DX)
     body[:, 0] += 0.15 - width / 2 * DX
@@ -527,7 +574,8 @@ print "Y $(f_mean)"
         assert (last["type"] == k).sum() == (kind == k).sum() + size
     inside = last["type"] == 1
     low, high = last["y"][last["type"] == 3].min(), last["x"][last["type"] == 3]
-    assert not ((last["y"] > low) & (last["x"] > high.min()) & (last["x"] < high.max()) & inside).any()
+    assert not ((last["y"] > low) & (last["x"] > high.min()) & (last["x"] < high.max())
+                & inside).any()
 
 
 @pytest.mark.parametrize("slip", ["yes", "no"])
@@ -539,9 +587,13 @@ def test_momentum_with_a_rigid_body(tmp_path, slip):
     v[kind == 2] = 0.2, -1.0, 0.0
     random = np.random.default_rng(5)
     v[kind == 1, :2] = random.uniform(-0.2, 0.2, ((kind == 1).sum(), 2))
-    text = deck("artificial/visc 0.1 0 laminar/visc density/diffusion 0.1", "oil buoy", f"slip {slip}", gravity=0, dt=1e-4, boundary="f f p",
-                more=f"fix rigid wall rigid single force * on on off torque * off off on\n{shot(100)}run 600")
-    frames = dump.read(go(tmp_path, text, data(x, kind, v, ((-0.4, -0.4, -DX / 2), (0.6, 0.6, DX / 2)))).folder / "atoms.dump")
+    text = deck("artificial/visc 0.1 0 laminar/visc density/diffusion 0.1", "oil buoy",
+                f"slip {slip}", gravity=0, dt=1e-4, boundary="f f p",
+                more="fix rigid wall rigid single force * on on off torque * off off on\n"
+                f"{shot(100)}run 600")
+    frames = dump.read(
+        go(tmp_path, text, data(x, kind, v, ((-0.4, -0.4, -DX / 2), (0.6, 0.6, DX / 2)))).folder
+        / "atoms.dump")
     body = kind == 2
 
     def momentum(frame):
@@ -555,7 +607,8 @@ def test_momentum_with_a_rigid_body(tmp_path, slip):
 
 
 def splash(dim, speed, light, seed=2):
-    """Drops and spray, some of it so light that it has no pressure, shot at a wall four particles thick: (x, type, v, rho)"""
+    """Drops and spray, some of it so light that it has no pressure, shot at a wall four particles
+    thick: (x, type, v, rho)"""
     n = (24, 4) if dim == 2 else (10, 4, 10)
     random = np.random.default_rng(seed)
     wall = lattice(n, DX)
@@ -575,11 +628,13 @@ def through(tmp_path, dim, speed, light, wall="", names="water wall", text=None)
     """Number of fluid particles that are inside the wall or behind it, ever"""
     x, kind, v, rho = splash(dim, speed, light)
     side = 24 * DX if dim == 2 else 10 * DX
-    box = ((0.0, -0.3, -DX / 2), (side, 0.5, DX / 2)) if dim == 2 else ((0.0, -0.3, 0.0), (side, 0.5, side))
+    box = ((0.0, -0.3, -DX / 2), (side, 0.5, DX / 2)) if dim == 2 else ((0.0, -0.3, 0.0),
+                                                                        (side, 0.5, side))
     # until the spray has come twice its height
     dt = 0.2 * 1.5 * DX / (C + speed)
     steps = int(0.3 / speed / dt)
-    text = (text or deck)(fluid="artificial/visc 0.05 0 density/diffusion 0.1", names=names, wall=wall, dim=dim, boundary="p s p", gravity=0, dt=dt,
+    text = (text or deck)(fluid="artificial/visc 0.05 0 density/diffusion 0.1", names=names,
+                          wall=wall, dim=dim, boundary="p s p", gravity=0, dt=dt,
                           more=f"{shot(max(1, steps // 20))}run {steps}")
     frames = dump.read(go(tmp_path, text, data(x, kind, v, box, rho)).folder / "atoms.dump")
     leaked = set()
@@ -588,9 +643,12 @@ def through(tmp_path, dim, speed, light, wall="", names="water wall", text=None)
     return len(leaked)
 
 
-@pytest.mark.parametrize("dim, mach, guard", [(2, 0.1, ""), (2, 0.5, ""), (3, 0.1, ""), (3, 0.5, ""), (2, 0.4, "guard 0.75"), (3, 0.3, "guard 0.75")])
+@pytest.mark.parametrize("dim, mach, guard", [(2, 0.1, ""), (2, 0.5, ""), (3, 0.1, ""),
+                                              (3, 0.5, ""), (2, 0.4, "guard 0.75"),
+                                              (3, 0.3, "guard 0.75")])
 def test_tight_under_impact(tmp_path, dim, mach, guard):
-    """Up to five times the speed that the sound of a deck is chosen for, a third of the spray 30 % light: the page's table."""
+    """Up to five times the speed that the sound of a deck is chosen for, a third of the spray 30 %
+    light: the page's table."""
     assert through(tmp_path, dim, mach * C, 0.3, guard) == 0
 
 
@@ -603,7 +661,8 @@ def test_only_the_guard_stops_light_spray(tmp_path, dim):
 
 def sloshing(newton="on", coeff=True, more="run 60"):
     """Everything at once: water, no-slip vessel that rolls, a floating body"""
-    return deck("artificial/visc 0.05 0 laminar/visc density/diffusion 0.1", "oil wall buoy", "slip no", newton=newton, coeff=coeff,
+    return deck("artificial/visc 0.05 0 laminar/visc density/diffusion 0.1", "oil wall buoy",
+                "slip no", newton=newton, coeff=coeff,
                 more=f"""group body type 3
 group tank type 2
 unfix walls
@@ -615,9 +674,11 @@ fix m tank move rotate 0.15 -0.2 0 0 0 1 9
 
 def test_ranks_and_newton(tmp_path):
     x, kind = buoy(9)
-    one = dump.read(go(tmp_path / "1", sloshing(more=shot(60) + "run 60"), data(x, kind, None, BOX2)).folder / "atoms.dump")[-1]
+    one = dump.read(go(tmp_path / "1", sloshing(more=shot(60) + "run 60"),
+                       data(x, kind, None, BOX2)).folder / "atoms.dump")[-1]
     for name, ranks, newton in (("2", 2, "on"), ("off", 2, "off")):
-        other = dump.read(go(tmp_path / name, sloshing(newton, more=shot(60) + "run 60"), data(x, kind, None, BOX2), ranks).folder / "atoms.dump")[-1]
+        other = dump.read(go(tmp_path / name, sloshing(newton, more=shot(60) + "run 60"),
+                             data(x, kind, None, BOX2), ranks).folder / "atoms.dump")[-1]
         for quantity in ("x", "v", "f", "rho"):
             assert difference(one, other, quantity) < 1e-9, (name, quantity)
 
@@ -625,12 +686,14 @@ def test_ranks_and_newton(tmp_path):
 def test_restart(tmp_path):
     x, kind = buoy(9)
     at = "restart 40 half.restart\n"
-    go(tmp_path, sloshing(more=at + shot(80) + "run 80").replace("half.restart\n", "*.restart\n"), data(x, kind, None, BOX2))
+    go(tmp_path, sloshing(more=at + shot(80) + "run 80").replace("half.restart\n", "*.restart\n"),
+       data(x, kind, None, BOX2))
     whole = dump.read(tmp_path / "atoms.dump")[-1]
     (tmp_path / "half.restart").write_bytes((tmp_path / "40.restart").read_bytes())
     # with the same restart command, since lists are rebuilt where one is written
     again = sloshing(coeff=False, more=at + shot(80, "again.dump") + "run 40")
-    again = again.replace("half.restart\n", "half.restart\npair_coeff * * scene.fsi oil wall buoy\n", 1)
+    again = again.replace("half.restart\n",
+                          "half.restart\npair_coeff * * scene.fsi oil wall buoy\n", 1)
     run(tmp_path, again, scene_fsi=MATERIALS)
     assert not differing(whole, dump.read(tmp_path / "again.dump")[-1])
 
@@ -654,15 +717,20 @@ reset_timestep 0
 def test_output_after_atoms_are_deleted(tmp_path):
     """Pairs within the guard are known by where atoms are in the arrays: others are there then."""
     x, kind = tank(12, 8)
-    text = deck(more='run 1\nprint "pairs $(f_walls)"\ngroup gone id 1:60\ndelete_atoms group gone\nprint "pairs $(f_walls)"\n')
+    text = deck(more='run 1\nprint "pairs $(f_walls)"\ngroup gone id 1:60\n'
+                'delete_atoms group gone\nprint "pairs $(f_walls)"\n')
     done = lammps(tmp_path, text, scene_data=data(x, kind, None, BOX2), scene_fsi=MATERIALS)
-    assert done.output.count("\npairs ") == 1 and "Fix fsi/wall/particle needs a run before it" in done.errors[0]
+    assert done.output.count(
+        "\npairs ") == 1 and "Fix fsi/wall/particle needs a run before it" in done.errors[0]
 
 
-@pytest.mark.parametrize("wall, error", [("", 0.005), ("pressure linear", 0.005), ("guard 0", 0.002)])
+@pytest.mark.parametrize("wall, error",
+                         [("", 0.005), ("pressure linear", 0.005), ("guard 0", 0.002)])
 def test_energy_of_a_dam_break(tmp_path, wall, error):
-    """Water breaks down in a tank of wall particles with the steps of fix fsi/dt: the ledger keeps the potential energy that it began with. The guard's own
-    energy is stored, and powers are those of the middle of a step: the error is of second order. (With velocities of the start of a step it was 8, 12 and
+    """Water breaks down in a tank of wall particles with the steps of fix fsi/dt: the ledger keeps
+    the potential energy that it began with. The guard's own energy is stored, and powers are those
+    of the middle of a step: the error is of second order. (With velocities of the start of a step
+    it was 8, 12 and
     1 %.)"""
     x, kind = tank(30, 30, layers=4)
     kept = (kind == 2) | ((x[:, 0] < 12 * DX) & (x[:, 1] < 20 * DX))
@@ -675,7 +743,8 @@ run 100000
 print "after $(c_e:%.10g)"
 """
     text = deck(wall=wall, more=more).replace("timestep 0.0001\n", "").replace("every 5", "every 1")
-    result = go(tmp_path, text, data(x[kept], kind[kept], box=((-0.1, -0.1, -DX / 2), (0.5, 0.6, DX / 2))))
+    result = go(tmp_path, text,
+                data(x[kept], kind[kept], box=((-0.1, -0.1, -DX / 2), (0.5, 0.6, DX / 2))))
     before, after = value(result, "before"), value(result, "after")
     print(f"{wall or 'default'}: {after / before - 1:.5f} of the energy")
     assert abs(after / before - 1) < error

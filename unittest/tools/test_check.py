@@ -38,7 +38,8 @@ print "steps done: $(step)"
 def folder(tmp_path, monkeypatch):
     """A deck with an include, outputs of an earlier run, and a folder to write into."""
     (tmp_path / "in.deck").write_text(DECK)
-    (tmp_path / "bodies.in").write_text("region water block 0 0.1 0 0.1 INF INF units box\ncreate_atoms 1 region water\n")
+    (tmp_path / "bodies.in").write_text("region water block 0 0.1 0 0.1 INF INF units box\n"
+                                        "create_atoms 1 region water\n")
     (tmp_path / "out").mkdir()
     for name in ("mine.dump", "mine.csv", "log.lammps", "out/mine.data"):
         (tmp_path / name).write_text("of an earlier run")
@@ -55,17 +56,24 @@ def says(capsys, *words):
 def test_sound_deck(folder, capsys):
     status, text = says(capsys)
     assert status == 0 and "100 particles, 100 steps; nothing to warn of" in text
-    assert "density of the fluid by continuity" in text and "2 mirror walls" not in text and "1 mirror wall" in text
-    assert all((folder / name).read_text() == "of an earlier run" for name in ("mine.dump", "mine.csv", "log.lammps", "out/mine.data"))
-    assert sorted(path.name for path in folder.iterdir()) == ["bodies.in", "in.deck", "log.lammps", "mine.csv", "mine.dump", "out"]
+    assert ("density of the fluid by continuity" in text and "2 mirror walls" not in text
+            and "1 mirror wall" in text)
+    assert all((folder / name).read_text() == "of an earlier run"
+               for name in ("mine.dump", "mine.csv", "log.lammps", "out/mine.data"))
+    assert sorted(path.name for path in folder.iterdir()) == ["bodies.in", "in.deck", "log.lammps",
+                                                              "mine.csv", "mine.dump", "out"]
 
 
 def test_runs_to_a_time(folder, capsys):
-    """Not the steps that run was given, but the time of the stop, over the first step's limit: h/2c with h = 0.015, c = 20."""
-    deck = (folder / "in.deck").read_text().replace("timestep 1e-4", "fix dt all fsi/dt 1 stop 0.3").replace("run $n every 10", "run 1000000 every 10")
+    """Not the steps that run was given, but the time of the stop, over the first step's limit: h/2c
+    with h = 0.015, c = 20."""
+    deck = (folder / "in.deck").read_text().replace("timestep 1e-4",
+                                                    "fix dt all fsi/dt 1 stop 0.3").replace(
+                                                        "run $n every 10", "run 1000000 every 10")
     (folder / "in.deck").write_text(deck)
     status, text = says(capsys)
-    assert status == 0 and f"100 particles, to t = 0.3 in {0.3 / (0.5 * 0.015 / 20):.2g} steps or more; nothing to warn of" in text
+    assert (status == 0 and f"100 particles, to t = 0.3 in {0.3 / (0.5 * 0.015 / 20):.2g} steps or "
+            "more; nothing to warn of" in text)
 
 
 @pytest.mark.parametrize("words", (["n=30"], ["-var", "n", "30"]))
@@ -73,26 +81,38 @@ def test_advice(words, folder, capsys):
     """A spacing that is not the lattice's; variables of the command line, in LAMMPS' form, too."""
     (folder / "in.deck").write_text(DECK.replace("fsi ${dx} wendland", "fsi 0.02 wendland"))
     status, text = says(capsys, *words)
-    assert status == 1 and "WARNING: Fix fsi" in text and "30 steps; " in text and "nothing to warn" not in text
+    assert (status == 1 and "WARNING: Fix fsi" in text and "30 steps; " in text
+            and "nothing to warn" not in text)
 
 
 def test_warnings_of_lammps_are_told_but_are_no_advice(folder, capsys):
-    (folder / "in.deck").write_text(DECK.replace("timestep 1e-4", "timestep 1e-4\nthermo_modify lost error\nthermo_style one"))
+    (folder / "in.deck").write_text(
+        DECK.replace("timestep 1e-4", "timestep 1e-4\nthermo_modify lost error\nthermo_style one"))
     status, text = says(capsys)
-    assert status == 0 and "WARNING: New thermo_style" in text and "nothing to warn of (and 1 of LAMMPS' own)" in text
+    assert (status == 0 and "WARNING: New thermo_style" in text
+            and "nothing to warn of (and 1 of LAMMPS' own)" in text)
 
 
 def test_bodies_are_measured(folder, capsys):
-    """A region 2.6 spacings thick has 3 columns or 2: seen before the run. Of many bodies the first ones."""
-    plate = "fsi/material plate solid rho 1000 young 2e6 poisson 0.4\npair_style hybrid fsi/fluid sound 20 fsi/solid/tl\n"
-    plate += "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate"
-    deck = DECK.replace("create_box 1", "create_box 2").replace("pair_style fsi/fluid sound 20\npair_coeff * * materials.fsi water", plate)
+    """A region 2.6 spacings thick has 3 columns or 2: seen before the run. Of many bodies the first
+    ones."""
+    plate = ("fsi/material plate solid rho 1000 young 2e6 poisson 0.4\n"
+             "pair_style hybrid fsi/fluid sound 20 fsi/solid/tl\n")
+    plate += ("pair_coeff * * fsi/fluid materials.fsi water plate\n"
+              "pair_coeff * * fsi/solid/tl materials.fsi NULL plate")
+    deck = DECK.replace("create_box 1", "create_box 2").replace(
+        "pair_style fsi/fluid sound 20\npair_coeff * * materials.fsi water", plate)
     (folder / "in.deck").write_text(deck)
-    places = "region plate{0} block 0.15 0.176 {1} {2} INF INF units box\ncreate_atoms 2 region plate{0}\ngroup plate{0} region plate{0}\nset group plate{0} mol {0}\n"
-    (folder / "bodies.in").write_text("region water block 0 0.1 0 0.1 INF INF units box\ncreate_atoms 1 region water\n" + places.format(1, 0.05, 0.15))
+    places = ("region plate{0} block 0.15 0.176 {1} {2} INF INF units box\ncreate_atoms 2 region "
+              "plate{0}\ngroup plate{0} region plate{0}\nset group plate{0} mol {0}\n")
+    (folder / "bodies.in").write_text("region water block 0 0.1 0 0.1 INF INF units box\n"
+                                      "create_atoms 1 region water\n"
+                                      + places.format(1, 0.05, 0.15))
     _, text = says(capsys)
-    assert "fsi check: body 1: 30 particles, 3 x 10 spacings of 0.01\n" in text and not list(folder.glob("fsi_check*"))
-    (folder / "bodies.in").write_text("".join(places.format(k, 0.04 * k - 0.04, 0.04 * k - 0.01) for k in range(1, 8)))
+    assert "fsi check: body 1: 30 particles, 3 x 10 spacings of 0.01\n" in text and not list(
+        folder.glob("fsi_check*"))
+    (folder / "bodies.in").write_text("".join(places.format(k, 0.04 * k - 0.04, 0.04 * k - 0.01)
+                                              for k in range(1, 8)))
     _, text = says(capsys)
     assert text.count("spacings of 0.01") == 6 and "fsi check: and 1 more\n" in text
 
@@ -109,9 +129,11 @@ def test_estimate(tmp_path, monkeypatch, capsys, name, given):
     (tmp_path / "in.deck").write_text(deck.read_text())
     monkeypatch.chdir(tmp_path)
     _, text = says(capsys, given)
-    guess, unit, memory = re.search(r"about (\d+) (s|min) of CPU time on one rank.*; arrays of (\d+) MB", text).groups()
+    guess, unit, memory = re.search(
+        r"about (\d+) (s|min) of CPU time on one rank.*; arrays of (\d+) MB", text).groups()
     key, value = given.split("=")
-    subprocess.run(launch.lammps("in.deck", 0, {key: value}), env=launch.environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, timeout=500, check=True)
+    subprocess.run(launch.lammps("in.deck", 0, {key: value}), env=launch.environment(),
+                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, timeout=500, check=True)
     runs = log.read("log.lammps").finished
     seconds = sum(run.cpu_seconds for run in runs)
     print(name, guess, unit, seconds)
@@ -130,9 +152,12 @@ FSI steps 1000000
 Loop time of 4
 FSI dt 2e-3
 """
-    found = log.Log(runs=[log.Run(loop_seconds=2.0, cpu_use=0.5, steps=10), log.Run(loop_seconds=4.0, cpu_use=0.5, steps=10)], values={}, warnings=[], errors=[])
+    found = log.Log(runs=[log.Run(loop_seconds=2.0, cpu_use=0.5, steps=10),
+                          log.Run(loop_seconds=4.0, cpu_use=0.5, steps=10)], values={}, warnings=[],
+                    errors=[])
     assert check.estimate(found, text) == pytest.approx(0.1 * 300 + 0.2 * 50)
-    assert check.estimate(found, text.replace("stop", "max")) == pytest.approx(0.1 * 1e6 + 0.2 * 1e6)
+    assert check.estimate(found,
+                          text.replace("stop", "max")) == pytest.approx(0.1 * 1e6 + 0.2 * 1e6)
     assert check.estimate(found, text.replace("stop", "max").replace("FSI steps", "none")) is None
 
 
@@ -143,18 +168,21 @@ def test_deck_that_does_not_run(folder, capsys):
     (folder / "in.deck").write_text(DECK + "nonsense\n")
     (folder / "bodies.in").write_text("create_atoms 1 single 0.1 0.1 0\n")
     status, text = says(capsys)
-    assert status == 1 and "Unknown command" in text and "fails after 2 of its runs were set up" in text
+    assert (status == 1 and "Unknown command" in text
+            and "fails after 2 of its runs were set up" in text)
 
 
 def test_what_a_deck_may_read(folder):
     """Included decks and files that are named, with variables; not what is written."""
     (folder / "shape_0.01.data").write_text("")
-    (folder / "more.in").write_text("read_data shape_${dx}.data add append\nread_data other_${unknown}.data\nmolecule m body.mol # not.this\n")
+    (folder / "more.in").write_text("read_data shape_${dx}.data add append\nread_data "
+                                    "other_${unknown}.data\nmolecule m body.mol # not.this\n")
     for name in ("other_7.data", "body.mol", "not.this"):
         (folder / name).write_text("")
     (folder / "in.deck").write_text(DECK + "include more.in\n")
     files, decks = check.inputs(folder / "in.deck", {"n": "1"}, folder)
-    assert {path.name for path in files} == {"bodies.in", "more.in", "shape_0.01.data", "other_7.data", "body.mol"}
+    assert {path.name for path in files} == {"bodies.in", "more.in", "shape_0.01.data",
+                                             "other_7.data", "body.mol"}
     assert {path.name for path in decks} == {"in.deck", "bodies.in", "more.in"}
 
 

@@ -9,7 +9,8 @@ RANDOM = np.random.default_rng(2)
 
 def test_vorticity():
     x, y = RANDOM.uniform(-1, 1, (2, 400))
-    # of a linear field it is exact: twice the rate of rotation, whatever strain and stream come with it
+    # of a linear field it is exact: twice the rate of rotation, whatever strain and stream come
+    # with it
     u, v = 3 + 0.4 * x - 1.1 * y, -2 + 0.7 * x - 0.4 * y
     np.testing.assert_allclose(geometry.vorticity(x, y, u, v, 0.4), 1.8, rtol=1e-9)
     # of another it is the best fit's, one particle at a time
@@ -18,7 +19,8 @@ def test_vorticity():
     for k in range(len(x)):
         ex, ey = x - x[k], y - y[k]
         weight = np.sqrt(np.maximum(0.0, 1 - (ex**2 + ey**2) / 0.4**2))
-        gradient = np.linalg.lstsq(weight[:, None] * np.column_stack([ex, ey]), weight[:, None] * np.column_stack([u - u[k], v - v[k]]), rcond=None)[0]
+        gradient = np.linalg.lstsq(weight[:, None] * np.column_stack([ex, ey]), weight[:, None]
+                                   * np.column_stack([u - u[k], v - v[k]]), rcond=None)[0]
         expected.append(gradient[0, 1] - gradient[1, 0])
     np.testing.assert_allclose(geometry.vorticity(x, y, u, v, 0.4), expected, rtol=1e-8, atol=1e-10)
 
@@ -30,6 +32,7 @@ def test_vorticity_of_points_that_do_not_tell():
 
 def test_min_pair_distance():
     for points in (RANDOM.uniform(-1, 1, (300, 2)), RANDOM.uniform(-1, 1, (300, 3))):
-        apart = np.linalg.norm(points[:, None] - points, axis=2) + np.where(np.eye(300), np.inf, 0.0)
+        apart = np.linalg.norm(points[:, None] - points,
+                               axis=2) + np.where(np.eye(300), np.inf, 0.0)
         assert np.isclose(geometry.min_pair_distance(points, 0.01), apart.min(), rtol=1e-12)
     assert geometry.min_pair_distance(np.zeros((1, 2)), 1.0) == np.inf

@@ -38,11 +38,14 @@ def left_out():
 
 
 def test_sources_are_all_there(tree):
-    for package, some in (("FSI", {"README", "fix_fsi.cpp"}), ("FSI-CLASSIC", {"README", "pair_fsi_solid.cpp"}),
-                          ("OPENMP", {"pair_fsi_fluid_omp.cpp"}), ("KOKKOS", {"pair_fsi_fluid_kokkos.cpp"})):
+    for package, some in (("FSI", {"README", "fix_fsi.cpp"}),
+                          ("FSI-CLASSIC", {"README", "pair_fsi_solid.cpp"}),
+                          ("OPENMP", {"pair_fsi_fluid_omp.cpp"}),
+                          ("KOKKOS", {"pair_fsi_fluid_kokkos.cpp"})):
         sources = {path.name: path.read_text()
                    for path in (paths.ROOT / "src" / package).glob("[!.]*")}
-        assert {path.name: path.read_text() for path in (tree / "src" / package).iterdir()} == sources
+        assert {path.name: path.read_text()
+                for path in (tree / "src" / package).iterdir()} == sources
         assert some <= set(sources)
         ignored = set((tree / "src/.gitignore").read_text().split())
         assert {f"/{name}" for name in sources if name != "README"} <= ignored

@@ -1,4 +1,5 @@
-"""tools/proof: hashes of what scenes leave are the same for the same sources, and others for another scene."""
+"""tools/proof: hashes of what scenes leave are the same for the same sources, and others for
+another scene."""
 
 import json
 
@@ -20,4 +21,5 @@ def test_same_and_other(tmp_path, capsys):
 def test_every_scene_has_a_deck():
     assert {name.split("/")[0] for name in proof.decks()} >= set(paths.examples())
     text = proof.begun("fix 1\nrun 0\nvariable n equal 2\nrun 500 upto\nrun 7\n", 3, "newton off\n")
-    assert text == "newton off\nfix 1\nrun 0\nvariable n equal 2\n\nrun 3\nwrite_restart left.restart\n"
+    assert (text == "newton off\nfix 1\nrun 0\nvariable n equal 2\n\nrun 3\n"
+            "write_restart left.restart\n")

@@ -1,4 +1,5 @@
-"""tools/run without its builds: which runs it makes of a scene, where they go, and what of it survives a failure."""
+"""tools/run without its builds: which runs it makes of a scene, where they go, and what of it
+survives a failure."""
 
 import json
 import re
@@ -42,12 +43,14 @@ Per MPI rank memory allocation (min/avg/max) = 1 | 2 | 3 Mbytes
        {steps}   1
 Loop time of {seconds} on {ranks} procs for {steps} steps with {atoms} atoms
 """
-CASES = {"coarse": {"variables": {"dx": "0.5"}}, "fine": {"variables": {"dx": 0.25, "rubber": "hard"}, "ranks": 3}}
+CASES = {"coarse": {"variables": {"dx": "0.5"}},
+         "fine": {"variables": {"dx": 0.25, "rubber": "hard"}, "ranks": 3}}
 
 
 @pytest.fixture
 def examples(tmp_path, monkeypatch):
-    """A folder of examples with one scene, `toy`, of two cases; LAMMPS is replaced by something that writes a log."""
+    """A folder of examples with one scene, `toy`, of two cases; LAMMPS is replaced by something
+    that writes a log."""
     monkeypatch.setattr(paths, "EXAMPLES", tmp_path / "examples")
     monkeypatch.setattr(paths, "DRIVERS", tmp_path / "unittest")
     monkeypatch.setattr(paths, "RESULTS", tmp_path / "results")
@@ -87,35 +90,43 @@ def figure(summary, name):
 
 def test_scene_without_variables_runs_all_cases(examples, capsys):
     assert scene.main(["toy"]) == 0
-    assert summary_of("toy", "coarse")["variables"] == {"dx": "0.5", "tend": "1.0", "rubber": "soft"}
+    assert summary_of("toy", "coarse")["variables"] == {"dx": "0.5", "tend": "1.0",
+                                                        "rubber": "soft"}
     fine = summary_of("toy", "fine")
-    assert (fine["ranks"], fine["given"], fine["case"]) == (3, {"dx": "0.25", "rubber": "hard"}, "fine")
+    assert (fine["ranks"], fine["given"], fine["case"]) == (3, {"dx": "0.25", "rubber": "hard"},
+                                                            "fine")
     # 2 atoms and 20 steps, 4 atoms and 40 steps, each 1 s of time loop and 2 s in all
     study = summary_of("toy")
     assert figure(study, "change")["value"] == pytest.approx(-1.0)
-    assert (study["particles"], study["steps"], study["cpu_seconds"], study["ranks"]) == (4, 60, 4.0, 3)
+    assert (study["particles"], study["steps"], study["cpu_seconds"],
+            study["ranks"]) == (4, 60, 4.0, 3)
     assert study["particle_steps_per_second"] == pytest.approx((2 * 20 + 4 * 40) / 2.0)
     rank_seconds = 1 + 3  # one rank where a case does not say
     assert study["particle_steps_per_second_per_rank"] == pytest.approx(200.0 / rank_seconds)
     assert study["bytes_per_particle"] == pytest.approx(2 * 2**20 * 3 / 4)
-    assert (study["lammps"], list(study["cases"]), study["failed_cases"]) == ("4 Feb 2025", ["coarse", "fine"], [])
+    assert (study["lammps"], list(study["cases"]),
+            study["failed_cases"]) == ("4 Feb 2025", ["coarse", "fine"], [])
     output = capsys.readouterr().out
     assert "case coarse (1 of 2)" in output and "case fine (2 of 2)" in output
-    pages = [(paths.RESULTS / "toy" / place / "report.html").read_text() for place in ("", "coarse", "fine")]
-    assert "fine/report.html" in pages[0] and "change" in pages[0] and "rubber = hard" in pages[2] and "met" in pages[2]
+    pages = [(paths.RESULTS / "toy" / place / "report.html").read_text()
+             for place in ("", "coarse", "fine")]
+    assert ("fine/report.html" in pages[0] and "change" in pages[0] and "rubber = hard" in pages[2]
+            and "met" in pages[2])
 
 
 def test_one_case(examples):
     assert scene.main(["toy", "case=fine", "ranks=1"]) == 0
     assert summary_of("toy", "fine")["ranks"] == 1
-    assert not (paths.RESULTS / "toy" / "coarse").exists() and not (paths.RESULTS / "toy" / "summary.json").exists()
+    assert not (paths.RESULTS / "toy" / "coarse").exists() and not (paths.RESULTS / "toy"
+                                                                    / "summary.json").exists()
 
 
 def test_own_variables_are_one_run_and_leave_the_cases_alone(examples, tmp_path):
     assert scene.main(["toy"]) == 0
     before = summary_of("toy")
     assert scene.main(["toy", "tend=2"]) == 0
-    assert summary_of("toy", scene.OWN_RUN)["variables"] == {"dx": "0.1", "tend": "2", "rubber": "soft"}
+    assert summary_of("toy", scene.OWN_RUN)["variables"] == {"dx": "0.1", "tend": "2",
+                                                             "rubber": "soft"}
     assert summary_of("toy") == before
     assert scene.main(["toy", "tend=2", f"out={tmp_path / 'mine'}"]) == 0
     assert (tmp_path / "mine" / "summary.json").exists()
@@ -164,23 +175,27 @@ def test_all_goes_on_after_a_failure(examples, capsys):
     assert scene.main(["all"]) == 1
     assert (paths.ROOT / "README.md").read_text() == readme
     assert figure(summary_of("toy"), "change") and summary_of("single")
-    assert summary_of("toy", "coarse")["ranks"] == 1 and summary_of("toy", "fine")["ranks"] == 3  # as the cases say
+    # as the cases say
+    assert summary_of("toy", "coarse")["ranks"] == 1 and summary_of("toy", "fine")["ranks"] == 3
     assert "2 scenes ran, 1 failed bad" in capsys.readouterr().out
     assert not paths.PAGE.exists()  # pages are written by tools/renew alone
     assert re.fullmatch(r"\d{4}-\d\d-\d\d", summary_of("toy")["date"])
 
 
 def test_all_goes_on_where_it_ended(examples, capsys, monkeypatch):
-    """What is there of this commit is not run again; a case that is not there, was changed or has failed is."""
+    """What is there of this commit is not run again; a case that is not there, was changed or has
+    failed is."""
     monkeypatch.setattr(scene, "commit", lambda: "0123456789")
     make_scene(examples / "single", cases=None)
     assert scene.main(["all"]) == 0
     assert "some 0 left" in capsys.readouterr().out
     (paths.RESULTS / "toy" / "coarse" / "summary.json").unlink()
-    (examples / "toy" / "cases.json").write_text(json.dumps({**CASES, "fine": {"variables": {"dx": 0.2}}}))
+    (examples / "toy" / "cases.json").write_text(
+        json.dumps({**CASES, "fine": {"variables": {"dx": 0.2}}}))
     assert scene.main(["all"]) == 0
     output = capsys.readouterr().out
-    assert "1 of 3 runs are there" in output and figure(summary_of("toy"), "change")["value"] == pytest.approx(-1.2)
+    assert "1 of 3 runs are there" in output and figure(summary_of("toy"),
+                                                        "change")["value"] == pytest.approx(-1.2)
     assert scene.main(["all"]) == 0 and "3 of 3 runs are there" in capsys.readouterr().out
     monkeypatch.setattr(scene, "commit", lambda: "0123456789+")
     assert scene.main(["all"]) == 0 and "runs are there" not in capsys.readouterr().out
@@ -217,7 +232,8 @@ def test_bad_cases_are_refused(examples, text, message):
 def test_bundled_cases_are_sound():
     for name in scene.scenes():
         scene.cases(name)
-        assert not set(scene.OPTIONS) & set(scene.deck_variables(scene.deck(name)))  # tools/run could not set it
+        # tools/run could not set it
+        assert not set(scene.OPTIONS) & set(scene.deck_variables(scene.deck(name)))
 
 
 def test_cases_with_lammps(examples, monkeypatch):
@@ -247,7 +263,8 @@ def test_target_of_a_figure(tmp_path):
 
 def test_quick_leaves_out_what_is_slow(monkeypatch):
     asked = []
-    monkeypatch.setattr(suite.subprocess, "run", lambda command, **_: asked.extend(command) or suite.subprocess.CompletedProcess(command, 0))
+    monkeypatch.setattr(suite.subprocess, "run", lambda command, **_: asked.extend(command)
+                        or suite.subprocess.CompletedProcess(command, 0))
     suite.pytest(suite.quick())
     collected = {Path(word).name for word in asked if word.startswith(str(paths.ROOT / "unittest"))}
     assert collected == {"styles"}

@@ -1,4 +1,5 @@
-"""Holds the mean velocity of the channel of in.python with a PI controller: reads a variable of LAMMPS and sets another, every 20 steps."""
+"""Holds the mean velocity of the channel of in.python with a PI controller: reads a variable of
+LAMMPS and sets another, every 20 steps."""
 
 from lammps import lammps
 
@@ -13,4 +14,5 @@ for k in range(100):
     lmp.set_internal_variable("push", 10.0 * error + 0.1 * total)
     lmp.command("run 20 pre no post no")
     if k % 10 == 0:
-        print(f"{lmp.extract_variable('speed'):.4f} m/s with {lmp.extract_variable('push'):.4f} m/s^2", flush=True)
+        print(f"{lmp.extract_variable('speed'):.4f} m/s with {lmp.extract_variable('push'):.4f} "
+              "m/s^2", flush=True)
