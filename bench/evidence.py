@@ -142,7 +142,8 @@ def cost_table():
                     cells.append("none")
                 else:
                     cells.append(
-                        f"{'< ' * (entry['kind'] == 'coarsest run')}{seconds(entry['cpu_seconds'])} ({at.format(entry['at'])})")
+                        f"{'< ' * (entry['kind'] == 'coarsest run')}"
+                        f"{seconds(entry['cpu_seconds'])} ({at.format(entry['at'])})")
             rows.append(["", "", "", text, *cells] if k
                         else [name, summary["title"], quantity_of(summary), text, *cells])
     return rows

@@ -108,7 +108,8 @@ def main(arguments):
         found = {}
         for ratio in ratios:
             folder = job.folder / f"{name}_{10 * ratio}"
-            found[ratio] = job.kept.get([name, ratio, settings_of(name, ratio)], lambda: measured(folder, name, ratio))  # noqa: B023
+            found[ratio] = job.kept.get([name, ratio, settings_of(name, ratio)],
+                                        lambda: measured(folder, name, ratio))  # noqa: B023
             say(f"{name} at {10 * ratio}: "
                 + ", ".join(f"{figure} {found[ratio][figure]:.4g}" for figure in SCENES[name][6]))
         rows += rows_of(name, found)

@@ -232,14 +232,16 @@ def study(folder, runs):
             peaks = [run[1].peak(f"tip_{name}")[0] for run in tried]
             for (coarse, _, _), (fine, _, _), a, b in zip(tried, tried[1:], peaks, peaks[1:]):
                 summary.add(
-                    f"{modulus}_tip_{name}_peak_change_{coarse['across']:.0f}_to_{fine['across']:.0f}_across",
+                    f"{modulus}_tip_{name}_peak_change_{coarse['across']:.0f}_to_"
+                    f"{fine['across']:.0f}_across",
                     b / a - 1.0, target=CONVERGED)
     for values, tip, _ in others:
         same = [run[1] for run in found.get(_modulus(values), ()) if run[0]["across"]
                 == values["across"]]
         for name in COMPONENTS if same else ():
             summary.add(
-                f"{_modulus(values)}_{_solid(values)}_tip_{name}_peak_{values['across']:.0f}_across",
+                f"{_modulus(values)}_{_solid(values)}_tip_{name}_peak_"
+                f"{values['across']:.0f}_across",
                 1e3 * tip.peak(f"tip_{name}")[0], "mm", 1e3 * same[0].peak(f"tip_{name}")[0],
                 "our total-Lagrangian gate at this spacing")
     for values, tip, _ in coarser:

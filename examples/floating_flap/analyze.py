@@ -147,7 +147,8 @@ def draw(folder, runs):
             for name in finest:
                 s = runs[name][1]
                 left.plot(s.time, 1e3 * s["heave"], color=color, linewidth=1.0,
-                          label=f"heave [mm], {'float alone' if 'box' in name else 'with its flap'}")
+                          label="heave [mm], "
+                          f"{'float alone' if 'box' in name else 'with its flap'}")
                 left.plot(s.time, np.degrees(s["pitch"]), color=color, linewidth=0.8,
                           linestyle="--", label="pitch [degrees]")
         left.set(xlabel="t [s]")
@@ -157,8 +158,10 @@ def draw(folder, runs):
         right.plot(periods, pitch, color=plot.ORANGE, label="pitch over their slope")
         for name, (values, s) in runs.items():
             if name.startswith("box"):
-                wave = next((abs(amplitude(w.time, w["level2"], 1.0)) for other, (v, w) in runs.items() if other.startswith("waves") and v["dx"] == values["dx"]), 0.01) \
-                    if values["T"] == 1.0 else 0.01
+                wave = next((abs(amplitude(w.time, w["level2"], 1.0))
+                             for other, (v, w) in runs.items()
+                             if other.startswith("waves") and v["dx"] == values["dx"]),
+                            0.01) if values["T"] == 1.0 else 0.01
                 k = expected(values["T"])[2]
                 for which, scale, color in (("heave", wave, plot.BLUE),
                                             ("pitch", k * wave, plot.ORANGE)):

@@ -65,7 +65,8 @@ def reference_logs(name):
             for old in target.glob(f"log.*.{name}.{ranks}"):
                 old.unlink()
             (target
-             / f"log.{date(log.read(Path(folder) / 'log.lammps').version)}.{name}.{ranks}").write_text(scrubbed(text))
+             / f"log.{date(log.read(Path(folder) / 'log.lammps').version)}.{name}.{ranks}"
+              ).write_text(scrubbed(text))
     return True
 
 

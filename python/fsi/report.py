@@ -139,7 +139,8 @@ def _table(head, rows, numbers=()):
 
 
 def _image(data, alt):
-    return f'<img alt="{escape(alt)}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
+    return (f'<img alt="{escape(alt)}" src="data:image/png;base64,'
+            f'{base64.b64encode(data).decode()}">')
 
 
 def _pictures(folder):

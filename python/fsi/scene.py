@@ -71,7 +71,8 @@ def cases(scene):
                  for name, case in json.loads(path.read_text()).items()}
     except (ValueError, AttributeError) as error:
         raise Refusal(
-            f"{path} is not of the form {{\"CASE\": {{\"variables\": {{...}}}}}}: {error}") from None
+            f"{path} is not of the form {{\"CASE\": {{\"variables\": {{...}}}}}}: "
+            f"{error}") from None
     for name, case in found.items():
         if not re.fullmatch(r"\w[\w.+-]*", name) or name == OWN_RUN:
             raise Refusal(f"{path}: '{name}' cannot be a case, since it has to be the name of a "

@@ -8,7 +8,8 @@ MEAN = 22       # words of a mean sentence: a page must be below
 LONGEST = 45    # words of any sentence
 
 _NUMBER = (
-    r"(?:\d+|n|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fourteen|fifteen|sixteen|twenty|thirty|forty|fifty|"
+    r"(?:\d+|n|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fourteen|fifteen|"
+    r"sixteen|twenty|thirty|forty|fifty|"
     r"particles?|rows?|spacings?)")
 _BODY = r"(?:flag|plates?|gate|cylinder|baffle|beam|rubber|body|thickness|column|solid)"
 # Words of this house and what a reader of the field expects instead; history of the work, which is
@@ -29,7 +30,8 @@ HOUSE = (
 COMPRESSED = (
     (r"\b(?:that|those) of\b", "name the thing again, or a genitive"),
     (r", too\b(?! "
-     r"(?:high|low|few|many|much|far|fast|slow|large|small|soft|stiff|thin|thick|short|long|late|early)\b)", "also"),
+     r"(?:high|low|few|many|much|far|fast|slow|large|small|soft|stiff|thin|thick|short|long|late|"
+     r"early)\b)", "also"),
     (r"\banew\b", "again"),
     (r"\bgo(?:es)? with(?:out)?\b(?! fix F)", "can, cannot be combined with"),
     (r"\bcomes? around\b", "re-enters"),
@@ -48,16 +50,22 @@ _ISE = ("organ real recogn normal initial minim maxim optim summar vector digit 
         "general special emphas util categor synchron local central neutral equal polar crystal "
         "fluid character").split()
 _BRITISH = (
-    r"neighbour\w*|colour\w*|behaviour\w*|favour\w*|honour\w*|labour\w*|vapour\w*|rigour|endeavour\w*|armour|harbour\w*|"
-    r"cent(?:re|res|red|ring)|(?:kilo|centi|milli|micro|nano)?met(?:re|res)|lit(?:re|res)|fib(?:re|res)|theatres?|sabre|calibre|"
-    r"modell(?:ed|ing|er)|travell(?:ed|ing|er)|cancell(?:ed|ing)|labell(?:ed|ing)|channell(?:ed|ing)|signall(?:ed|ing)|levell(?:ed|ing)|"
-    r"grey\w*|analys(?:e|ed|er|ing)|paralys(?:e|es|ed)|catalys(?:e|es|ed)|fulfils?|licence\w*|defence\w*|offence\w*|artefacts?|whilst|amongst|"
-    r"programmes?|judgement\w*|ageing|ploughs?|plough\w*|sceptic\w*|aluminium|moulds?|mouldings?|manoeuv\w+|tyres?|storeys?|"
+    r"neighbour\w*|colour\w*|behaviour\w*|favour\w*|honour\w*|labour\w*|vapour\w*|rigour|"
+    r"endeavour\w*|armour|harbour\w*|"
+    r"cent(?:re|res|red|ring)|(?:kilo|centi|milli|micro|nano)?met(?:re|res)|lit(?:re|res)|"
+    r"fib(?:re|res)|theatres?|sabre|calibre|"
+    r"modell(?:ed|ing|er)|travell(?:ed|ing|er)|cancell(?:ed|ing)|labell(?:ed|ing)|channell(?:ed|"
+    r"ing)|signall(?:ed|ing)|levell(?:ed|ing)|"
+    r"grey\w*|analys(?:e|ed|er|ing)|paralys(?:e|es|ed)|catalys(?:e|es|ed)|fulfils?|licence\w*|"
+    r"defence\w*|offence\w*|artefacts?|whilst|amongst|"
+    r"programmes?|judgement\w*|ageing|ploughs?|plough\w*|sceptic\w*|aluminium|moulds?|mouldings?|"
+    r"manoeuv\w+|tyres?|storeys?|"
     rf"(?:{'|'.join(_ISE)})is(?:e|es|ed|ing|ation|ations)")
 HASH = r"\b(?=[0-9a-f]*[0-9])(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b"
 _SHORT = r"\b(?:e\.g|i\.e|et al|vs|cf|approx|resp|Fig|Figs|Eq|Eqs|No|Sec|Mr|Dr|art|vol|pp|[A-Z])\."
 _SILENT = (
-    "code-block|math|parsed-literal|index|list-table|table|csv-table|image|figure|toctree|raw|literalinclude|include|role|meta|only")
+    "code-block|math|parsed-literal|index|list-table|table|csv-table|image|figure|toctree|raw|"
+    "literalinclude|include|role|meta|only")
 
 
 def faults(text, markup="md", house=HOUSE + COMPRESSED):

@@ -193,8 +193,8 @@ def test_citation():
     names = re.findall(r"^  - name: (.*)", cff, re.M)
     assert f" author = {{{' and '.join(f'{{{name}}}' for name in names)}}},\n" in entry
     assert f" title = {{{re.search('^title: (.*)', cff, re.M)[1]}}},\n" in entry
-    assert (
-        f" note = {{Version {re.search('^version: (.*)', cff, re.M)[1].strip(chr(34))}}}\n" in entry)
+    assert (" note = {Version "
+            f"{re.search('^version: (.*)', cff, re.M)[1].strip(chr(34))}}}\n" in entry)
 
 
 def test_page_of_a_command_has_the_form_of_lammps():

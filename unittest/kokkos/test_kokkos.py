@@ -250,7 +250,8 @@ def test_dam_break_3d(tmp_path):
                 f"fix walls all fsi/wall/mirror xlo 0 xhi {36 * DX!r} ylo 0 zlo 0 zhi {8 * DX!r}",
                 "fix dt all fsi/dt 10",
                 dim=3, fluid="preset splash 4",
-                water=f"0 {12 * DX!r} 0 {12 * DX!r} 0 {8 * DX!r}") + f"fsi/set all hydrostatic {12 * DX!r}\n" + watch(every=50) + "run 100\n"
+                water=f"0 {12 * DX!r} 0 {12 * DX!r} 0 {8 * DX!r}") + (
+                    f"fsi/set all hydrostatic {12 * DX!r}\n") + watch(every=50) + "run 100\n"
     plain, kk = (run(tmp_path / str(len(k)), text, arguments=k).frames() for k in ((), kokkos(2)))
     assert difference(plain[0], kk[0], "f") < CLOSE
     assert all(difference(plain[-1], kk[-1], quantity) < LATER for quantity in ("x", "v", "rho"))

@@ -324,7 +324,8 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
             parts.append("fsi/grain")
         return (
             "pair_style "
-            f"{'hybrid/overlay ' if self.setting('grains') else 'hybrid ' if len(parts) > 1 else ''}{' '.join(parts)}")
+            f"{'hybrid/overlay ' if self.setting('grains') else 'hybrid ' * (len(parts) > 1)}"
+            f"{' '.join(parts)}")
 
     @property
     def coeff(self):
@@ -332,7 +333,8 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
             "water", "water")
         names = (f"water {body} wall buoy water {'NULL' if self.setting('grains') else 'water'} "
                  f"{'oil' if self.setting('oil') else 'water'} {soft}")
-        more = f"{'' if 'poisson' in self.has['material'] else 'poisson 0.3'} {self.has['material']}"
+        more = (f"{'' if 'poisson' in self.has['material'] else 'poisson 0.3'} "
+                f"{self.has['material']}")
         lines = [f"fsi/material water fluid rho 1000 {self.has['water'] or 'viscosity 1'}",
                  "fsi/material wall wall rho 1000", "fsi/material buoy wall rho 600",
                  f"fsi/material body solid rho 1100 young 5e4 {more}",

@@ -49,7 +49,9 @@ class Runs:
     """The runs of a scene; the first is kept for all that is asked of it."""
 
     def __init__(self, k, row):
-        self.scene, self.place = PairScene(row), tempfile.TemporaryDirectory(prefix=f"fsi_pairs_{k}_")    # pylint: disable=consider-using-with
+        # pylint: disable-next=consider-using-with
+        self.scene, self.place = PairScene(row), tempfile.TemporaryDirectory(
+            prefix=f"fsi_pairs_{k}_")
         self.folder = Path(self.place.name)
 
     @functools.cached_property

@@ -183,7 +183,9 @@ OTHER = {
                        "fix move piston fsi/move linear 0.1 0 0 units box": "",
                        "fix move piston fsi/move wiggle 0.01 0 0 0.2 units box": "", "fix move "
                        "piston fsi/move linear 0.1 NULL 0 units box": "Write 0 instead of NULL",
-                       "fix move piston fsi/move variable v_s v_zero NULL v_zero v_zero NULL": r"displacement v_s changes by \S+ per time, but the velocity v_zero is 0"},
+                       "fix move piston fsi/move variable v_s v_zero NULL v_zero v_zero NULL":
+                           r"displacement v_s changes by \S+ per time, but the velocity v_zero "
+                           r"is 0"},
     ("tank", "dt"): {"fix dt all fsi/dt 5 max 5e-5": "",
                      "fix dt all fsi/dt 2 cfl 0.2 max 1e-4 substeps auto": "",
                      "fix dt all fsi/dt 5 check warn": "",

@@ -93,7 +93,8 @@ CASES = {
                r"fsi/displace"),
     "excluded": ([("run 0", "group plates type 2\nneigh_modify exclude group plates all\nrun 0")],
                  None,
-                 r"neigh_modify exclude hides neighbors from 40 particles, the first of them atom 1"),
+                 r"neigh_modify exclude hides neighbors from 40 particles, the first of them "
+                 r"atom 1"),
     "excluded solids": ([("fsi/solid/tl", "fsi/solid"),
                          ("run 0", "fix stress all fsi/stress\ngroup plates type 2\n"
                           "neigh_modify exclude group plates plates\nrun 0")], None,

@@ -60,8 +60,9 @@ RUN = "run 0"
 
 def tl(keywords="", more=""):
     """The scene with a total-Lagrangian plate"""
-    return HYBRID, "pair_style hybrid fsi/fluid sound 10 fsi/solid/tl " + keywords + \
-        "\npair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate\n" + more
+    return HYBRID, ("pair_style hybrid fsi/fluid sound 10 fsi/solid/tl " + keywords
+                    + "\npair_coeff * * fsi/fluid materials.fsi water plate\n"
+                    "pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n" + more)
 
 
 def tl_spacing(dx):
@@ -75,8 +76,9 @@ def probe(arguments):
 
 
 def spectrum(arguments):
-    return RUN, "variable x equal step\nvariable a atom x\ncompute vector all reduce sum x y z vx vy vz\n" \
-        f"fix slow all ave/time 1 1 4 v_x\nfix s all fsi/spectrum {arguments}\nrun 0"
+    return RUN, ("variable x equal step\nvariable a atom x\n"
+                 "compute vector all reduce sum x y z vx vy vz\n"
+                 f"fix slow all ave/time 1 1 4 v_x\nfix s all fsi/spectrum {arguments}\nrun 0")
 
 
 NO_FSI = "unfix sph\npair_style zero 0.03\npair_coeff * *\nunfix stress\nunfix walls\n"

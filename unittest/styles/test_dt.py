@@ -97,8 +97,9 @@ def test_first_step(tmp_path):
     One below: kept."""
     scene, limit = fluid_box(2), []
     for step in ("", "timestep 1", "timestep 1e-5"):
-        text = re.sub("timestep .*", step, scene.text()) + "fix dt all fsi/dt 10 \nthermo_style custom step dt\n" \
-            "thermo_modify format float %.10g\nthermo 1\nrun 2\n"
+        text = re.sub("timestep .*", step, scene.text()) + (
+            "fix dt all fsi/dt 10 \nthermo_style custom step dt\n"
+            "thermo_modify format float %.10g\nthermo 1\nrun 2\n")
         done = run(tmp_path, text, scene_data=scene.data())
         limit.append(float(re.search(r"^\s+1 +(\S+)$", done.output, re.M)[1]))
     fastest = np.linalg.norm(scene.v, axis=1).max()
@@ -430,8 +431,9 @@ def test_stops_with_the_usual_thermo(tmp_path):
 def test_output_goes_on_beyond_the_first_guess_of_the_end(tmp_path):
     """Falling water needs shorter and shorter steps, 9 % more than the first one lets expect: all
     is written until the end."""
-    text = re.sub("timestep .*", "", fluid_box(2).text()) + "fix fall all gravity 100 vector 0 -1 0\nfix dt all fsi/dt 10 stop 0.1\n" \
-        + END.format(every=0.01)
+    text = (re.sub("timestep .*", "", fluid_box(2).text())
+            + "fix fall all gravity 100 vector 0 -1 0\nfix dt all fsi/dt 10 stop 0.1\n"
+            + END.format(every=0.01))
     done = run(tmp_path, text, scene_data=fluid_box(2).data())
     table, steps = rows_of(done.output), int(re.search(r"^END \S+ (\d+)", done.output, re.M)[1])
     dt = table[1, 2]

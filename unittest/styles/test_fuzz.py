@@ -81,9 +81,8 @@ def test_parsers_survive(tmp_path):
                           env=launch.environment(), capture_output=True, text=True,
                           errors="replace", timeout=300, check=False)
     last = (tmp_path / "last.txt").read_text(errors="replace")
-    assert (
-        done.returncode
-        == 0), f"ended with {done.returncode} in\n{last}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+    assert done.returncode == 0, (f"ended with {done.returncode} in\n{last}\n"
+                                  f"{done.stdout[-2000:]}{done.stderr[-2000:]}")
     errors, accepted = map(int, done.stdout.split()[-2:])
     # neither is everything refused nor everything taken, or the mutations are of no use
     assert errors + accepted == INPUTS and errors > INPUTS / 4 and accepted > INPUTS / 20

@@ -202,8 +202,10 @@ def test_one_neighbor(tmp_path, dim):
         with Grains(tmp_path, dim, x, np.zeros_like(x), grains, np.zeros_like(grains), 0.4 * DX,
                     fluid="tension yes", box=box) as s:
             s.run()
-            s.lmp.numpy.extract_atom("rho")[np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + len(grains)])[:len(x)]] = \
-                1000 + (np.arange(len(x)) % 2 if second else 2.5)  # p = 1000 Pa, or 0 and 400 Pa
+            # p = 1000 Pa, or 0 and 400 Pa
+            s.lmp.numpy.extract_atom("rho")[
+                np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + len(grains)])[:len(x)]
+            ] = 1000 + (np.arange(len(x)) % 2 if second else 2.5)
             size = np.linalg.norm(s.run().get("f")[len(x):], axis=1)
         assert size.max() == 0 if second in (None, 3e-3) else size.min() > 0
 

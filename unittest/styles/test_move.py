@@ -146,7 +146,8 @@ def test_goes_on_from_where_a_command_has_put_it(style):
             np.testing.assert_allclose(s.get("x")[16:], first, atol=1e-13)
         s.run(20)
         # variables that know where particles were at the command go on from that
-        moving = lambda t: exact(x[16:], t)[0] + offset if "variable" in style else exact(first, t)[0]    # noqa: E731
+        moving = lambda t: (  # noqa: E731
+            exact(x[16:], t)[0] + offset if "variable" in style else exact(first, t)[0])
         np.testing.assert_allclose(s.get("x")[16:], moving(0.02), atol=1e-13)
         s.run_lines("displace_atoms held move -0.01 0.03 0 units box")
         s.run(0).run(30)

@@ -255,7 +255,8 @@ def test_wall_particles_join_a_motion_that_sums_over_ranks(tmp_path, ranks):
     """One rank makes the atom; the variable has a compute, which all of them have to ask."""
     text = deck("tank", move="compute far water reduce max x\n"
                 "variable s equal 0*c_far+0.01*(1-cos(30*time))\n"
-                             "fix move piston fsi/move variable v_s v_zero NULL v_u v_zero NULL").replace("fsi/spectrum 5", "fsi/spectrum 50")
+                "fix move piston fsi/move variable v_s v_zero NULL v_u v_zero NULL").replace(
+                    "fsi/spectrum 5", "fsi/spectrum 50")
     text += ("region up block -0.035 -0.005 0.2 0.3 -0.001 0.001 units box\n"
              "fix drip piston deposit 3 3 5 8765 region up near 0.02 units box id max\n")
     done = run(tmp_path, text + f"run {STEPS}\n" + dump("end"), ranks, m_fsi=MATERIALS)

@@ -839,7 +839,8 @@ BAD = {
     "10 types 1 2 distance some 0.1\nrun 0\ngroup some delete": r"Group some of fix fsi/refine "
     r"distance does not exist",
     "10 types 1 2 3 distance wall 0.2 0.3": r"distance: 0.3 after 0.2, expected less",
-    "10 types 1 2 3 distance wall 0.3 0.2": r"there is 0.1 for atom type 2: expected at least 0.185",
+    "10 types 1 2 3 distance wall 0.3 0.2":
+        r"there is 0.1 for atom type 2: expected at least 0.185",
     "10 types 1 3 region one": r"spacings of 0.05 and 0.025: expected 0.0353553 of the second",
     "10 types 1 4 region one": r"atom types 1 and 4 have the density 1000 and 900: expected one "
     r"fluid",

@@ -180,9 +180,9 @@ def test_what_to_change_is_what_took_the_time(tmp_path, case, named):
 
 def test_vector_is_the_run_so_far(tmp_path):
     scene, text = gate()
-    more = "fix report all fsi/report\nfix push all addforce 3.0 0 0\nthermo 20\nthermo_style custom step " + \
-        " ".join(f"f_report[{k}]"
-                 for k in range(1, 4)) + "\nthermo_modify format float %.12g\nrun 40\n"
+    more = ("fix report all fsi/report\nfix push all addforce 3.0 0 0\nthermo 20\n"
+            "thermo_style custom step " + " ".join(f"f_report[{k}]" for k in range(1, 4))
+            + "\nthermo_modify format float %.12g\nrun 40\n")
     done = run(tmp_path, text + more, scene_data=scene.data())
     report, thermo = reports(done)[0], log.read(tmp_path / "log.lammps").runs[0].thermo
     table = np.array([thermo[f"f_report[{k}]"] for k in range(1, 4)])

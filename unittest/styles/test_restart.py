@@ -93,8 +93,9 @@ def test_particles_that_leave_the_box_go_on_bit_for_bit(tmp_path, bounds, ranks)
     """They move on after the lists of the step in which a file is written, and are in its box: a
     shrink-wrapped one is around them; what leaves a fixed one, as one row does here in that half
     step, is lost a step later."""
-    physics = "fsi/material water fluid rho 1000\npair_style fsi/fluid sound 20\npair_coeff * * NULL water\nfix sph all fsi 0.01 wendland 1.5\n" \
-        "timestep 2e-4\nneighbor 0.003 bin\nthermo_modify lost ignore\n"
+    physics = ("fsi/material water fluid rho 1000\npair_style fsi/fluid sound 20\n"
+               "pair_coeff * * NULL water\nfix sph all fsi 0.01 wendland 1.5\n"
+               "timestep 2e-4\nneighbor 0.003 bin\nthermo_modify lost ignore\n")
     make = (box("0 0.105 0 0.1", 0.01, boundary=bounds, water="0 0.1 0 0.1") + "velocity all set 1 "
             "0.3 0 units box\nvelocity all ramp vx -1 0.68 x 0 0.095 sum yes units box\n")
     whole = run(tmp_path, make + physics + watch(every=60) + "restart 30 mid.*\nrun 60\n",
@@ -688,8 +689,11 @@ def test_computes_between_runs(tmp_path, kind, when):
 
 def test_fixes_before_a_run(tmp_path):
     """Outputs of fixes that know nothing yet are 0, not a crash."""
-    text = BEFORE_A_RUN + "fix 5 all fsi/dt 10\nfix 6 all fsi/report\nfix 7 all fsi/watch 10\nfix 8 all fsi/wall/mirror xlo 0\nfix 9 all fsi/wall/particle\n" \
-        'print "VALUES $(f_5) $(f_5[7]) $(f_6[1]) $(f_6[3]) $(f_7) $(f_8) $(f_8[1][1]) $(f_9) $(f_9[1])"\n'
+    text = BEFORE_A_RUN + (
+        "fix 5 all fsi/dt 10\nfix 6 all fsi/report\nfix 7 all fsi/watch 10\n"
+        "fix 8 all fsi/wall/mirror xlo 0\nfix 9 all fsi/wall/particle\n"
+        'print "VALUES $(f_5) $(f_5[7]) $(f_6[1]) $(f_6[3]) $(f_7) $(f_8) $(f_8[1][1]) '
+        '$(f_9) $(f_9[1])"\n')
     done = run(tmp_path, text, water_fsi=MATERIALS)
     values = list(map(float, re.search(r"^VALUES (.*)$", done.output, re.M)[1].split()))
     assert values[0] == 1e-5 and not any(values[1:])

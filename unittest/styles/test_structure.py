@@ -1,7 +1,9 @@
 """The structure of the sources: files include each other without a circle, fix fsi no style, laws
 nothing of LAMMPS; functions fit on a page."""
 
+import io
 import re
+import tokenize
 
 import pytest
 
@@ -157,6 +159,21 @@ def test_functions_fit_on_a_page():
 def test_lines_are_not_wide():
     assert {file.name for file in sources()
             if any(len(line) > 100 for line in file.read_text().splitlines())} == set()
+
+
+@pytest.mark.parametrize("folder", ["bench", "doc", "examples", "python", "unittest"])
+def test_lines_of_python_are_not_wide(folder):
+    """Outside of input scripts and pages in literals of several lines."""
+    wide = []
+    for file in (paths.ROOT / folder).rglob("*.py"):
+        text = file.read_text()
+        inside = set()
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            if token.type == tokenize.STRING and token.start[0] < token.end[0]:
+                inside.update(range(token.start[0], token.end[0] + 1))
+        wide += [f"{file.name}:{k}" for k, line in enumerate(text.splitlines(), 1)
+                 if len(line) > 100 and k not in inside]
+    assert not wide
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -95,9 +95,10 @@ def two_levels(kind, layers, ratio, dim=2, thin=True, coarse=None):
 
 
 # of the scene; one particle across has too few bonds for an elastic body
-CASES = [("wall", layers, ratio, 2) for layers in (1, 2, 3) for ratio in (1, 2, 3)] + [("wall", 1, 1, 3), ("wall", 1, 2, 3)] + \
-    [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2), (2, 0.5))] + [
-        ("wall", 1, 0.5, 2)]
+CASES = ([("wall", layers, ratio, 2) for layers in (1, 2, 3) for ratio in (1, 2, 3)]
+         + [("wall", 1, 1, 3), ("wall", 1, 2, 3)]
+         + [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2), (2, 0.5))]
+         + [("wall", 1, 0.5, 2)])
 LONG = [("plate", 2, 2, 2), ("wall", 1, 2, 3)]
 
 
@@ -255,10 +256,10 @@ def blade(skin, thin="thin 2", levels=False):
     with Scene(x, v, dx=dx, type=type_, mol=1 + wall, held=wall, **more,
                fluid="sound 20 artificial/visc 0.05 0 density/diffusion 0.1 "
                f"{'tension yes background 2000 shift 0.2' * levels}",
-               dt=2e-4, skin=skin, commands=["neigh_modify every 1 delay 0 check yes",
-                                             "fix w held fsi/wall/particle",
-                                             "fix g all gravity 9.81 vector 0.6 -0.8 0",
-                                             "fix m all fsi/wall/mirror xlo 0 xhi 0.24 ylo 0"]) as s:
+               dt=2e-4, skin=skin, commands=[
+                   "neigh_modify every 1 delay 0 check yes", "fix w held fsi/wall/particle",
+                   "fix g all gravity 9.81 vector 0.6 -0.8 0",
+                   "fix m all fsi/wall/mirror xlo 0 xhi 0.24 ylo 0"]) as s:
         s.run(200)
         return s.get("x")
 

@@ -196,8 +196,8 @@ def test_free_plate_swings_and_is_damped():
     s0, measured = poles(G, lambda g: free.imag**2 * bending(g) / bending(G), terms), swing(terms)
     decrement = -2 * np.pi * measured.real / measured.imag, -2 * np.pi * s0.real / s0.imag
     print(f"plate: elastic {free.imag / thin - 1:+.4f} of a thin one, frequency "
-          f"{measured.imag / s0.imag - 1:+.4f} (elastic "
-          f"{measured.imag / free.imag - 1:+.4f}), decrement {decrement[0]:.4f}, {decrement[1]:.4f}")
+          f"{measured.imag / s0.imag - 1:+.4f} (elastic {measured.imag / free.imag - 1:+.4f}), "
+          f"decrement {decrement[0]:.4f}, {decrement[1]:.4f}")
     # rotary inertia, and shear, whose loss is another than that of bending
     assert free.imag == pytest.approx(thin, rel=0.06)
     assert measured.imag == pytest.approx(s0.imag, rel=0.01)

@@ -364,7 +364,8 @@ def test_solid_behind_a_wall_is_not_there(dim, ratio, couple):
         v = np.where(type[:, None] == 1, np.random.default_rng(5).uniform(-0.3, 0.3, x.shape)
                      * ([1] * dim + [0] * (3 - dim)), 0)
         with standing(x, type, dim, v=v, style="fsi/solid" if couple != "wall" else "fsi/solid/tl",
-                      fluid=f"couple {couple} artificial/visc {ALPHA} {BETA} laminar/visc shift 0.5", density=f"spacing 2 {DX / ratio!r}") as s:
+                      fluid=f"couple {couple} artificial/visc {ALPHA} {BETA} laminar/visc shift "
+                      "0.5", density=f"spacing 2 {DX / ratio!r}") as s:
             water, there = type == 1, (x[:, 1:dim] > 0).all(1)
             s.run()
             s.put("rho", np.where(water, 1020.0, 1100.0))

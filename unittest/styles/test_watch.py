@@ -176,8 +176,9 @@ def test_changes_nothing(tmp_path, ranks):
 def test_warnings(tmp_path, ranks):
     """Each once, the run goes on, and the count is there."""
     scene = fluid_box(2)
-    text = scene.text() + "fix watch all fsi/watch 5 action warn distance 0.9999 density 1e-4\nrun 20\nrun 20\n" \
-        'print "COUNT $(f_watch)"\n'
+    text = scene.text() + (
+        "fix watch all fsi/watch 5 action warn distance 0.9999 density 1e-4\nrun 20\nrun 20\n"
+        'print "COUNT $(f_watch)"\n')
     done = run(tmp_path, text, ranks, scene_data=scene.data())
     lines = [line for line in done.output.splitlines() if "Fix fsi/watch" in line]
     assert len(lines) == 2 and all("WARNING" in line for line in lines)

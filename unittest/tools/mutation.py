@@ -35,7 +35,8 @@ TESTS = {
     "fsi_classic_laws.h": "ctest solid solid_tl",
     "fsi_pair_laws.h": "ctest viscosity walls density shift contact self_contact",
     "fsi_material.*": "ctest density solid", "fsi_sight.cpp": "thin",
-    "fsi_fluid_*": "density momentum walls surface interface viscosity wall_particles shift spacing",
+    "fsi_fluid_*":
+        "density momentum walls surface interface viscosity wall_particles shift spacing",
     "fsi_rows_omp.h": "omp", "pair_fsi_*_omp.*": "omp",
     "fsi_pair_sets.*": "walls thin lists", "fsi_wet_solids.cpp": "walls solid_tl",
     "pair_fsi_fluid.cpp": "density integrator dt interface surface wall_particles shift",

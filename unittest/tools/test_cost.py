@@ -197,7 +197,8 @@ def test_instructions_are_those_of_the_time_loop(plate, tmp_path):
     # twice the steps, twice the instructions, with 10 % for what a run does once; the start of
     # LAMMPS alone takes more than either
     *_, store, jobs = plate
-    counted = [store._simulate(tmp_path, jobs[0][1], steps) for steps in (40, 80)]  # pylint: disable=protected-access
+    # pylint: disable-next=protected-access
+    counted = [store._simulate(tmp_path, jobs[0][1], steps) for steps in (40, 80)]
     assert counted[0]["steps"] == 40 and counted[1]["instructions"] == pytest.approx(
         2 * counted[0]["instructions"], rel=0.1)
     # a pair takes tens of instructions: a kernel, a stress times a gradient; thousands would be

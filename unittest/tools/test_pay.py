@@ -78,9 +78,11 @@ def test_damage_looks_where_a_bond_may_break(counted):
 
 
 FOREIGN = {
-    "fluid": "Solid|Stress|Reference|Wall|Energy|FSIDt|Watch|Surface|position_divergence|number_density|displacements",
+    "fluid": "Solid|Stress|Reference|Wall|Energy|FSIDt|Watch|Surface|position_divergence|"
+             "number_density|displacements",
     "updated": "Fluid|SolidTL|Reference|Wall|Energy|FSIDt|Watch|Surface|hourglass|number_density",
-    "total": "Fluid|Wall|FixFSIStress|Energy|FSIDt|Watch|Surface|advance_solids|break_bonds|number_density"}
+    "total": "Fluid|Wall|FixFSIStress|Energy|FSIDt|Watch|Surface|advance_solids|break_bonds|"
+             "number_density"}
 
 
 @pytest.mark.parametrize("name", DECKS)

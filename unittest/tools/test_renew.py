@@ -248,8 +248,8 @@ def test_hard_page_says_what_the_data_say():
 
 def test_robustness_counts_its_table():
     rows = read_csv(evidence.HARD / "robustness.csv")
-    assert (
-        f" {sum(r['verdict'] == 'sound' for r in rows)} of {len(rows)} scenes start soundly" in hard_pages.robust())
+    sound = sum(r["verdict"] == "sound" for r in rows)
+    assert f" {sound} of {len(rows)} scenes start soundly" in hard_pages.robust()
     # a wall that does not move has no material that could matter
     assert not [r for r in rows if r["scene"] in renew.robustness.HELD
                 and not r["change"].startswith(("as it is", "spacing"))]
@@ -326,8 +326,8 @@ def test_what_is_not_accurate_has_the_numbers_of_the_data():
                      for r in read_csv(evidence.PAGE / f"{name}.csv")
                      if r["role"] == "curve"} for key in ("error", "status"))
     said = evidence.unstable()
-    assert (
-        f"the gate bends {round(-100 * error['elastic_gate', 'TL', 0.0025])} % too little" in said[0])
+    bends = round(-100 * error["elastic_gate", "TL", 0.0025])
+    assert f"the gate bends {bends} % too little" in said[0]
     plate = {x: status for (name, method, x), status in ended.items() if (name, method)
              == ("oscillating_plate", "UL quadratic, hourglass, clamp at the face")}
     fewest = re.search(r"the elastic plate with fewer than (\d+) particles", said[3])[1]

@@ -61,13 +61,13 @@ def found(tree):
 def test_head_says_what_is_met_and_what_failed(found):
     head = results.render(found).split("| scene |")[0]
     assert "with a reference from outside, 2 of 3 are met.**" in head  # speed, time, slope
-    assert (
-        "by a run of this package 1 of 1 are met, of self-checks without a reference 1 of 1." in head)
+    assert ("by a run of this package 1 of 1 are met, of self-checks without a reference 1 of "
+            "1." in head)
     assert "**Failed, in part or as a whole: lost, study.**" in head
     # 2 * 12.34 + 1 + 3 * 200 s
     assert "All 2 scenes and the hard cases together take 0.2 hours on one core." in head
-    assert (
-        "All 7 figures are in [results.csv](results.csv), with the 1 self-checks that are met." in head)
+    assert ("All 7 figures are in [results.csv](results.csv), with the 1 self-checks that are "
+            "met." in head)
     assert head.count("![") == 1
 
 
@@ -108,11 +108,10 @@ def test_a_scene_without_references_and_targets_has_a_line(found):
 
 def test_kinds():
     """The kind stands first; what has none is refused, not counted as one from outside."""
-    assert [results.kind(source) for source in (None, "code, finite elements, X",
-                                                "2D finite elements", "our own 2D run",
-                                                "codes: middle", "beam theory: y",
-                                                "finite differences", "mean over the last 0.5 s")] == \
-        [None, "finite elements", "finite elements", "own run", "code", "theory", "theory", None]
+    sources = (None, "code, finite elements, X", "2D finite elements", "our own 2D run",
+               "codes: middle", "beam theory: y", "finite differences", "mean over the last 0.5 s")
+    assert [results.kind(source) for source in sources] == [
+        None, "finite elements", "finite elements", "own run", "code", "theory", "theory", None]
     with pytest.raises(Refusal, match="'somebody' begins with none of the kinds"):
         results.kind("somebody")
 
