@@ -83,6 +83,11 @@ void FSIClamp::command(int narg, char **arg)
                  "Fsi/clamp {} {}: fix {} (style {}) knows its particles already, and would not "
                  "move those that come: expected it after fsi/clamp",
                  names[0], names[1], fix->id, fix->style);
+  if (update->first_update)
+    error->all(FLERR,
+               "Fsi/clamp {} {}: the body has moved, and would be held where it is: expected it "
+               "before the first run",
+               names[0], names[1]);
   const Cells clamps(atom, disc.dim, NEXT * disc.largest_cut, [&](int i) {
     return in(i, 1);
   });

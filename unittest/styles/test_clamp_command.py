@@ -90,6 +90,8 @@ def test_a_bar_hangs_as_long_as_it_is(tmp_path):
      "would still move the particles that go to held: expected its group moving as the first one"),
     ("fsi/clamp held moving", "would still move the particles that go to moving: expected its "
      "group moving as the first one"),
+    ("run 1\nfsi/clamp moving held",
+     "would be held where it is: expected it before the first run"),
     ("run 0\nfix r held rigid single\nfsi/clamp moving held",
      "fix r (style rigid) knows its particles already")])
 def test_errors(tmp_path, line, word):
