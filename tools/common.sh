@@ -7,6 +7,13 @@ export FSI_BUILD_DIR=$build
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root}
 export PYTHONPATH="$root/python${PYTHONPATH:+:$PYTHONPATH}"
 
+# what stands at the top of a tool
+usage() { sed -n '2,/^set/{/^#/s/^# \{0,1\}//p}' "$0"; }
+case ${0##*/}/${1:-} in
+  run/* | cost/* | pytest/*) ;; # say more
+  */-h | */--help) usage; exit 0 ;;
+esac
+
 say() { printf '%s: %s\n' "${0##*/}" "$*"; }
 
 # Prints the first python3 that has all the named modules; the one on the PATH may lack those that apt installed.

@@ -3,11 +3,12 @@ survives a failure."""
 
 import json
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from fsi import paths, scene, suite
+from fsi import launch, paths, scene, suite
 from fsi.summary import Summary
 
 DECK = """# a deck that computes nothing
@@ -269,3 +270,14 @@ def test_quick_leaves_out_what_is_slow(monkeypatch):
     collected = {Path(word).name for word in asked if word.startswith(str(paths.ROOT / "unittest"))}
     assert collected == {"styles"}
     assert f"--ignore={paths.ROOT / 'unittest/styles/test_fuzz.py'}" in asked
+
+
+@pytest.mark.parametrize("tool", sorted(
+    path.name for path in (paths.ROOT / "tools").iterdir() if not path.suffix))
+def test_help_is_all_that_is_done(tool, tmp_path):
+    """No tool installs or builds anything when it is asked what it does."""
+    done = subprocess.run([paths.ROOT / "tools" / tool, "--help"], text=True, timeout=60,
+                          env={**launch.environment(), "FSI_BUILD_DIR": str(tmp_path / "build")},
+                          stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    assert done.returncode == 0 and (f"tools/{tool}" in done.stdout or tool == "pytest")
+    assert not (tmp_path / "build").exists()
