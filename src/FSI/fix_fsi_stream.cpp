@@ -17,9 +17,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_inlet.h"
 #include "force.h"
-#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
@@ -118,13 +116,6 @@ void FixFSIStream::setup(int vflag)
   if (!anywhere(std::any_of(zone.begin(), zone.end(), acts), world))
     error->all(FLERR, "Region {} of fix fsi/stream has no fluid of group {}", region_id,
                group->names[igroup]);
-  for (const auto *end : fixes_of<FixFSIInlet>(lmp))
-    for (const auto &[i, weight] : zone)
-      if (weight > 0.0 && end->holds(atom->x[i]))
-        error->one(FLERR,
-                   "Region {} of fix fsi/stream reaches into the buffer of fix {}, which sets the "
-                   "velocity there: expected it before the plane",
-                   region_id, end->id);
   post_force(vflag);
 }
 

@@ -142,17 +142,6 @@ def deck(start=ATOMS, ends="f f", newton="on", moving="all", of="oil oil", more=
         background=background, moving=moving, materials=of, more=more, inlet=inlet, outlet=outlet)
 
 
-@pytest.mark.parametrize("zone, end", [("-0.3 1", "i"), ("2 3.4", "o"), ("0 3", None)])
-def test_stream_in_a_buffer_is_refused(tmp_path, zone, end):
-    """What it drives there the open end prescribes: the energy of its force would go nowhere."""
-    stream = (f"region zone block {zone} INF INF INF INF units box\n"
-              "fix s all fsi/stream 1 NULL NULL region zone rate 10\n")
-    done = lammps(tmp_path, deck(more=stream) + "run 1\n", **FILES)
-    assert bool(done.status) == bool(end)
-    assert not end or f"zone of fix fsi/stream reaches into the buffer of fix {end}" in (
-        done.errors[0])
-
-
 OPEN = pytest.mark.parametrize("background", ["", " background 100"],
                                ids=["", "density follows shifting"])
 
