@@ -694,11 +694,15 @@ static void standing_walls(const Census &c)
 static void walls_at_planes(const Census &c)
 {
   static constexpr double NEAR = 0.75;    // spacings
+  const auto is_plane = [](const Wall &w) {
+    return w.joins != 0;
+  };
+  if (std::none_of(c.walls.wall.begin(), c.walls.wall.end(), is_plane)) return;
+  const Cells walls = c.cells(NEAR * c.coarsest(), [&](int i) {
+    return c.state(i).species == RIGID;
+  });
   for (const Wall &plane : c.walls.wall) {
-    if (!plane.joins) continue;
-    const Cells walls = c.cells(NEAR * c.coarsest(), [&](int i) {
-      return c.state(i).species == RIGID;
-    });
+    if (!is_plane(plane)) continue;
     const auto ends = find_particles(c.atom, c.world, [&](int i) {
       const double *const x = c.atom->x[i], apart = plane.distance(x) / c.dx(i);
       double image[3] = {x[0], x[1], x[2]};
