@@ -191,17 +191,27 @@ void FixFSIWallMirror::check_same(const Wall &w, const FixFSIWallMirror &of) con
   }
 }
 
-// a fluid particle that starts behind a wall is a mistake in the script
+// a fluid particle that starts behind a wall is a mistake in the script, and so is one of a wall
+// where its images are
 void FixFSIWallMirror::setup(int)
 {
+  static constexpr double LEAST = 0.25;    // spacings, half a one is meant
   double **x = atom->x;
   const int *const mask = atom->mask, *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit) || disc->state[type[i]].species != FLUID) continue;
-    for (const auto &w : walls)
-      if (!w.finite && w.distance(x[i]) < -disc->dx)
+    if (!(mask[i] & groupbit)) continue;
+    const int species = disc->state[type[i]].species;
+    for (const auto &w : walls) {
+      if (species == FLUID && !w.finite && w.distance(x[i]) < -disc->dx)
         error->one(FLERR, "Fluid atom {} at {} is behind the {} wall of fix {}", atom->tag[i],
                    place_text(x[i]), face(w), id);
+      if (species == RIGID && w.joins && w.distance(x[i]) < LEAST * disc->dx_of(type[i]))
+        error->one(
+            FLERR,
+            "Wall atom {} at {} is where images of its wall are, in the plane of symmetry {} "
+            "of fix {}: expected half a spacing before the plane, {:g}, or more",
+            atom->tag[i], place_text(x[i]), face(w), id, 0.5 * disc->dx_of(type[i]));
+    }
   }
 }
 
@@ -305,8 +315,8 @@ void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
     joins = joins || w.joins;
     noslip = noslip || w.noslip;
   }
-  if (joins && all.solids == 0)
-    nothing("Fix fsi/wall/mirror symmetry", "no particle is a solid");
+  if (joins && all.solids == 0 && !any_is(fixes_of<Part>(lmp), &Facts::particle_walls))
+    nothing("Fix fsi/wall/mirror symmetry", "no particle is a solid or a wall");
   else if (joins)
     return;
   else if (!fluid.style)

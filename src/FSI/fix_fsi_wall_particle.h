@@ -71,12 +71,13 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   std::unique_ptr<FSI::Message> to_ghosts, from_ghosts;
   std::vector<int> types_of_members();
   void enter_states(std::vector<FSI::State> &, const std::vector<int> &types);
-  // f(wall particle, fluid particle, distance between and its square) of those within a distance,
-  // if that is not beyond the kernel's support
+  // f(wall particle, fluid particle, distance between and its square, mirror) of those within a
+  // distance, if that is not beyond the kernel's support; mirror: it is the fluid's image in it, or
+  // null
   template <class F> void for_pairs(size_t level, double cutsq, F f) const;
   void sum_up();
-  // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d W, d d W, p d W,
-  // d = x_wall - x; with turns of d W
+  // per atom, over the fluid and its images: of W, p W, rho (x_wall - x) W, v W; with linear of
+  // d W, d d W, p d W, d = x_wall - x; with turns of d W
   double **sum = nullptr;
   int nsum = 0, first_moment, first_stiffness;
   bool turns = false;              // walls that fluid sticks to may

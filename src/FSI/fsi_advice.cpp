@@ -690,34 +690,6 @@ static void standing_walls(const Census &c)
            across.count, across.first);
 }
 
-// Walls of particles have no images: one that ends at a plane of symmetry leaves a gap behind it
-static void walls_at_planes(const Census &c)
-{
-  static constexpr double NEAR = 0.75;    // spacings
-  const auto is_plane = [](const Wall &w) {
-    return w.joins != 0;
-  };
-  if (std::none_of(c.walls.wall.begin(), c.walls.wall.end(), is_plane)) return;
-  const Cells walls = c.cells(NEAR * c.coarsest(), [&](int i) {
-    return c.state(i).species == RIGID;
-  });
-  for (const Wall &plane : c.walls.wall) {
-    if (!is_plane(plane)) continue;
-    const auto ends = find_particles(c.atom, c.world, [&](int i) {
-      const double *const x = c.atom->x[i], apart = plane.distance(x) / c.dx(i);
-      double image[3] = {x[0], x[1], x[2]};
-      image[plane.axis] = 2.0 * plane.position - x[plane.axis];
-      return c.state(i).species == RIGID && apart > 0.0 && apart < NEAR &&
-          !walls.any_within(image, NEAR * c.dx(i));
-    });
-    if (ends.count)
-      c.warn("{} wall particles, the first of them atom {}, end at the plane of symmetry {} = "
-             "{:.10g}, and walls of particles have no images: continue them behind it by a "
-             "kernel's support",
-             ends.count, ends.first, "xyz"[plane.axis], plane.position);
-  }
-}
-
 // A lattice of fluid ends half a spacing from a mirror wall, and closes around the periodic box: if
 // not, their distance is no whole number of spacings, and what is missing expands.
 static void ends(const Census &c)
@@ -864,7 +836,6 @@ static void advise(const Census &c)
       shallow(c);
       pressed(c);
       standing_walls(c);
-      walls_at_planes(c);
       ends(c);
     }
   }

@@ -126,7 +126,7 @@ namespace FSI {
           (FLAGS & Flag::IMAGES) && KIND == WITH_FLUID && is_below(laws, mirror, in.type[i], down);
       T sum[D];
       for (T &s : sum) s = 0.0;
-      Taken<T, D> taken((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES) ? laws.taken : nullptr);
+      Taken<T, D> taken((FLAGS & Flag::SUMS) ? laws.taken : nullptr, mirror);
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(
           row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
             Particle<T, D> pj(point, j);
@@ -149,7 +149,7 @@ namespace FSI {
               sum[d] += force[d];
               if (FLAGS & Flag::IMAGES) on_all[d] += m.share * (force[d] + on_j[d]);
             }
-            if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) taken.add(coupling, friction, j);
+            if (FLAGS & Flag::SUMS) taken.add(coupling, friction, j);
             L::add_rows(on_j, f, j);
           });
       taken.close(i);
@@ -280,8 +280,7 @@ namespace FSI {
 
     // With sums, images, neighbors of another spacing, both viscosities, the central one, or pair
     // by pair there is one loop for all effects: those that are off have coefficients of zero.
-    // Images of another spacing are few: their sums may be for nothing. Walls of particles have no
-    // images.
+    // Images of another spacing, and of walls of particles, are few: their sums may be for nothing.
     struct ForcesTable {
       static constexpr int FLAGS = EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY | VARIES;
       static constexpr Compiled ROWS[] = {
@@ -303,6 +302,7 @@ namespace FSI {
           {WITH_WALL, ARTIFICIAL, 0, Compiled::PACKS},
           {WITH_WALL, LAMINAR, 0, Compiled::PACKS},
           {WITH_WALL, EFFECTS, SUMS | UNEQUAL},
+          {WITH_WALL, EFFECTS | SUMS | UNEQUAL | IMAGES, 0},
           {WITH_SOLID_FULL, EFFECTS | SUMS, IMAGES, Compiled::ONE_BY_ONE},
       };
     };
@@ -370,7 +370,7 @@ namespace FSI {
                  varies = pairs.kind == WITH_FLUID && laws.viscosity;
       const int unequal = full ? 0
           : varies             ? Flag::UNEQUAL | Flag::VARIES
-                               : unequal_flag(pairs, false);
+                               : unequal_flag(pairs, pairs.kind == WITH_WALL && pairs.mirror);
       PairSums unused;
       const bool counted = full || pairs.in.visible.part ||
           (unequal && (varies || pairs.in.unlike || pairs.mirror));
@@ -443,7 +443,7 @@ namespace FSI {
 
     // Rows of fluids of two spacings, and of solids and walls of another spacing than the fluid's;
     // those that have it, among them, have ratios that change nothing. So have those that mirror
-    // walls cut and, in loops of rates, images of solids.
+    // walls cut, images of walls and, in loops of rates, of solids.
     static int unequal_flag(const FluidPairs &pairs, bool images)
     {
       const FluidParticles &in = pairs.in;

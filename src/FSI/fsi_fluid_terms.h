@@ -496,12 +496,14 @@ namespace FSI {
     return loss;
   }
 
-  // Adds what coupling and friction take, as forces on the neighbors j and on i, to rows
+  // Adds what coupling and friction take, as forces on i and on the neighbors j, of images turned as
+  // the wall turns them, to rows
   template <class T, int D> struct Taken {
     T of_i[2 * D];
     double (*const rows)[row_of_points(D)];
-    FSI_INLINE explicit Taken(double *rows_in) :
-        rows(reinterpret_cast<double (*)[row_of_points(D)]>(rows_in))
+    const Mirror mirror;
+    FSI_INLINE Taken(double *rows_in, const Mirror &mirror_in) :
+        rows(reinterpret_cast<double (*)[row_of_points(D)]>(rows_in)), mirror(mirror_in)
     {
       for (T &s : of_i) s = 0.0;
     }
@@ -512,8 +514,8 @@ namespace FSI {
       for (int d = 0; d < D; d++) {
         of_i[d] += coupling[d];
         of_i[D + d] += friction[d];
-        of_j[d] = -coupling[d];
-        of_j[D + d] = -friction[d];
+        of_j[d] = -mirror.sign[d] * coupling[d];
+        of_j[D + d] = -mirror.sign[d] * friction[d];
       }
       Lanes<T>::add_rows(of_j, rows, j);
     }

@@ -178,15 +178,16 @@ void StepState::gather_walls(LAMMPS *lmp)
   walls.find_reflections();
 }
 
-// walls of particles go on behind a mirror themselves
+// walls of particles have images in planes of symmetry alone, behind others they go on themselves
 void StepState::find_near_walls(const Atom *atom, const Discretization &disc)
 {
   const int nall = atom->nlocal + atom->nghost;
   const Vector *const x = vectors(atom->x);
   const InnerBox inner(walls.wall, disc.cut);
   for_particles(nall, [=, &inner, &disc](int i) {
-    const bool none = inner.contains(x[i]) || disc.state[atom->type[i]].species == RIGID;
-    wmask[i] = none ? 0 : walls.near(x[i], disc.cut);
+    wmask[i] = inner.contains(x[i]) ? 0 : walls.near(x[i], disc.cut);
+    if (wmask[i] && disc.state[atom->type[i]].species == RIGID)
+      wmask[i] &= walls.joined_by(atom->mask[i]);
   });
 }
 

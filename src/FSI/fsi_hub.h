@@ -233,7 +233,7 @@ namespace FSI {
     // per component: displacement of the last step that had one over the time it is for, which
     // density follows between open ends where fluid fills the box
     double *shift_velocity[3] = {};
-    int *wmask = nullptr;                // bits of the mirror walls that an atom is near
+    int *wmask = nullptr;                // bits of the mirror walls that an atom has images in
     double **wall_velocity = nullptr;    // viscous velocity of no-slip walls of particles (fix
                                          // fsi/wall/particle) and solids
     // Of solids with sub-steps: how fluid resists a change of their velocity within the step (xx yy

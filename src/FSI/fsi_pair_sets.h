@@ -45,7 +45,7 @@ namespace FSI {
     double h = 0.0, cut = 0.0, wdx = 0.0;    // of the kernel: W(mean spacing) last
     std::shared_ptr<FluidLoops> loops, of_forces;    // all; those of forces
     RowList rows;                                    // of the neighbor list
-    std::vector<RowList> images;                     // by reflection; walls of particles have none
+    std::vector<RowList> images;                     // by reflection
     // of images: the support, and what a pair comes nearer in a step
     double reach = INFINITY;
     // of these, what is within the support and a margin: the lists have the skin's pairs, too
@@ -95,6 +95,8 @@ namespace FSI {
     template <class Loop> void for_rates(const Walls &, const FluidParticles &, Loop);
     // Calls loop(set, pairs, k) for those within the support, k the number of an image's reflection
     template <class Loop> void for_all(const Walls &, const FluidParticles &, Loop);
+    // Calls loop(set, rows, Mirror or null) for those with walls of particles
+    template <class Loop> void for_walls(const Walls &, Loop);
 
    private:
     const Discretization *disc = nullptr;
@@ -156,7 +158,7 @@ namespace FSI {
     for (size_t k = 0; k < walls.reflections.size(); k++) {
       const Mirror mirror(walls, walls.reflections[k]);
       for (auto &set : sets) {
-        if (set.what == PairSet::WALLS || set.images[k].rows.empty()) continue;
+        if (set.images[k].rows.empty()) continue;
         loop(set, pairs_of(set, set.images[k].rows, set.visible_images[k], &mirror, particles), k);
       }
     }
@@ -169,6 +171,16 @@ namespace FSI {
     for (const auto &set : sets)
       loop(set, pairs_of(set, near_rows(set), set.visible, nullptr, particles), 0);
     for_images(walls, particles, loop);
+  }
+
+  template <class Loop> void PairSets::for_walls(const Walls &walls, Loop loop)
+  {
+    for (const auto &set : sets)
+      if (set.what == PairSet::WALLS) loop(set, near_rows(set), nullptr);
+    if (!walls.joined_by(~0)) return;
+    for_images(walls, {}, [&](const PairSet &set, const FluidPairs &pairs, int k) {
+      if (set.what == PairSet::WALLS) loop(set, set.images[k].rows, pairs.mirror);
+    });
   }
 
   template <class Loop>

@@ -143,19 +143,25 @@ namespace FSI {
   }
 
   // calls f(j, d, rsq), d = x_j - x_i, for the neighbors of a row, or of LAMMPS' list, within a
-  // distance
+  // distance; x_i: where its particle is, or its image
   template <class F>
-  void for_near(const Row &row, const double *const *x, int dim, double cutsq, F f)
+  void for_near(const Row &row, const double *xi, const double *const *x, int dim, double cutsq,
+                F f)
   {
     for (int k = 0; k < row.n; k++) {
       const int j = row.j[k] & NEIGHMASK;
       double d[3], rsq = 0.0;
       for (int a = 0; a < dim; a++) {
-        d[a] = x[j][a] - x[row.i][a];
+        d[a] = x[j][a] - xi[a];
         rsq += d[a] * d[a];
       }
       if (rsq < cutsq) f(j, d, rsq);
     }
+  }
+  template <class F>
+  void for_near(const Row &row, const double *const *x, int dim, double cutsq, F f)
+  {
+    for_near(row, x[row.i], x, dim, cutsq, f);
   }
 
   // Puts the neighbors of a row that are near in front of the others, in place, while a loop goes

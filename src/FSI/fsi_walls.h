@@ -43,7 +43,7 @@ namespace FSI {
     bool finite = false;              // has an extent
     double lo[3] = {}, hi[3] = {};    // extent along the other two axes
     bool hydrostatic = false;         // are images as much deeper as they are lower?
-    int joins = 0;                    // bit of the group whose solids go on in their images
+    int joins = 0;    // of a plane of symmetry: bit of the group whose bodies go on in their images
 
     FSI_INLINE double distance(const double *x) const { return side * (x[axis] - position); }
     // part of the cell of a particle with spacing dx that is before a plane without end
@@ -200,6 +200,15 @@ namespace FSI {
               reflections.push_back({1 << a | 1 << b | 1 << c, 3, {a, b, c}});
         }
       }
+    }
+
+    // bits of the planes of symmetry for a body's particle with this mask
+    int joined_by(int mask) const
+    {
+      int bits = 0;
+      for (size_t k = 0; k < wall.size(); k++)
+        if (wall[k].joins & mask) bits |= 1 << k;
+      return bits;
     }
 
     // as WallRow has them

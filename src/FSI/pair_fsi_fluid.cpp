@@ -156,11 +156,13 @@ void PairFSIFluid::take_virial(Pair *of)
   hybrid->no_virial_fdotr_compute = 1;
 }
 
-const std::vector<Row> &PairFSIFluid::rows_with_walls(size_t level) const
+void PairFSIFluid::for_rows_with_walls(const UseOfRows &use)
 {
-  static const std::vector<Row> none;
-  if (pairs.sets.empty()) return none;    // not set up yet
-  return pairs.near_rows(pairs.of(level, PairSet::WALLS));
+  if (pairs.sets.empty()) return;    // not set up yet
+  pairs.for_walls(step->walls,
+                  [&](const PairSet &set, const std::vector<Row> &rows, const Mirror *mirror) {
+                    use(set.level, rows, mirror);
+                  });
 }
 
 State PairFSIFluid::make_state(const Material &m) const

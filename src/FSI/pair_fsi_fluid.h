@@ -22,6 +22,7 @@ PairStyle(fsi/fluid,PairFSIFluid);
 
 #include "pair_fsi.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -77,8 +78,11 @@ class PairFSIFluid : public PairFSI {
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
   void add_gradient_sum(double *) override;
-  // fluid particles of a level of the scene and wall particles that may be within the support
-  const std::vector<FSI::Row> &rows_with_walls(size_t level) const;
+  // Calls use(level of the scene, rows, mirror) for fluid particles, or what they are mirrored to,
+  // and wall particles that may be within the support
+  using UseOfRows =
+      std::function<void(size_t level, const std::vector<FSI::Row> &, const FSI::Mirror *)>;
+  void for_rows_with_walls(const UseOfRows &use);
 
  protected:
   bool handles(int a, int b) const override { return a == FSI::FLUID || b == FSI::FLUID; }

@@ -378,18 +378,3 @@ def test_stream_that_cannot_tear(tmp_path, change):
 def test_said_once(tmp_path):
     assert (len(advice(tmp_path, [("sound 12.53", "sound 5"), ("run 0", "run 0\nrun 1\nrun 1")]))
             == 1)
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("behind, plane, warned", [
-    ("0", "symmetry yes", True), ("-0.04", "symmetry yes", False), ("0", "", False)])
-def test_walls_of_particles_end_at_a_plane_of_symmetry(tmp_path, behind, plane, warned, ranks):
-    """They have no images; four rows of a floor end there, or go on behind it."""
-    text = deck("-0.06 0.1 -0.06 0.1", 0.01,
-                {"water": WATER, "wall": "wall rho 1000", "rubber": RUBBER},
-                "fix w wall fsi/wall/particle", f"fix m all fsi/wall/mirror xlo 0 {plane}",
-                "run 0", group="water", solid="artificial/visc 0.1 0", water="0 0.05 0 0.05",
-                wall=f"{behind} 0.05 -0.04 0", rubber="0 0.03 0.06 0.09")
-    said = run(tmp_path, text, ranks).output
-    expected = r"4 wall particles, the first of them atom \d+, end at the plane of symmetry x = 0"
-    assert bool(re.search(expected, said)) == warned
