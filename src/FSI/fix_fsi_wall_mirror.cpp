@@ -315,11 +315,8 @@ void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
     joins = joins || w.joins;
     noslip = noslip || w.noslip;
   }
-  if (joins && all.solids == 0 && !any_is(fixes_of<Part>(lmp), &Facts::particle_walls))
-    nothing("Fix fsi/wall/mirror symmetry", "no particle is a solid or a wall");
-  else if (joins)
-    return;
-  else if (!fluid.style)
+  if (joins && all.solids > 0) return;
+  if (!fluid.style)
     nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
   else if (all.fluids == 0)
     nothing("Fix fsi/wall/mirror", "no particle is a fluid");

@@ -185,9 +185,12 @@ void StepState::find_near_walls(const Atom *atom, const Discretization &disc)
   const Vector *const x = vectors(atom->x);
   const InnerBox inner(walls.wall, disc.cut);
   for_particles(nall, [=, &inner, &disc](int i) {
-    wmask[i] = inner.contains(x[i]) ? 0 : walls.near(x[i], disc.cut);
-    if (wmask[i] && disc.state[atom->type[i]].species == RIGID)
-      wmask[i] &= walls.joined_by(atom->mask[i]);
+    int near = 0;
+    if (!inner.contains(x[i])) {
+      const bool of_wall = disc.state[atom->type[i]].species == RIGID;
+      near = walls.near(x[i], disc.cut) & (of_wall ? walls.joined_by(atom->mask[i]) : ~0);
+    }
+    wmask[i] = near;
   });
 }
 

@@ -429,11 +429,11 @@ void PairSets::find_images(const Walls &walls, const double *places)
 {
   const int n = walls.reflections.size();
   for (auto &set : sets) {
+    if (set.what == PairSet::WALLS && !walls.joined_by(~0)) continue;
     set.visible_images.resize(n);
     for (auto &visible : set.visible_images) visible.clear();
     set.images.resize(n);
     for (auto &rows : set.images) rows.clear();
-    if (set.what == PairSet::WALLS && !walls.joined_by(~0)) continue;
     find_images_of(set, walls, places);
     for (auto &rows : set.images) rows.end();
   }

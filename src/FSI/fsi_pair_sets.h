@@ -45,7 +45,7 @@ namespace FSI {
     double h = 0.0, cut = 0.0, wdx = 0.0;    // of the kernel: W(mean spacing) last
     std::shared_ptr<FluidLoops> loops, of_forces;    // all; those of forces
     RowList rows;                                    // of the neighbor list
-    std::vector<RowList> images;                     // by reflection
+    std::vector<RowList> images;                     // by reflection; empty: has none
     // of images: the support, and what a pair comes nearer in a step
     double reach = INFINITY;
     // of these, what is within the support and a margin: the lists have the skin's pairs, too
@@ -155,13 +155,12 @@ namespace FSI {
     // only what is within reach
     if (images_step != update->ntimestep || walls.finite()) find_images(walls, particles.points);
     images_step = update->ntimestep;
-    for (size_t k = 0; k < walls.reflections.size(); k++) {
-      const Mirror mirror(walls, walls.reflections[k]);
+    for (size_t k = 0; k < walls.reflections.size(); k++)
       for (auto &set : sets) {
-        if (set.images[k].rows.empty()) continue;
+        if (set.images.empty() || set.images[k].rows.empty()) continue;
+        const Mirror mirror(walls, walls.reflections[k]);
         loop(set, pairs_of(set, set.images[k].rows, set.visible_images[k], &mirror, particles), k);
       }
-    }
   }
 
   template <class Loop>

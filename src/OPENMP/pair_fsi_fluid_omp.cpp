@@ -130,8 +130,7 @@ class ThreadedLoops : public FluidLoops {
   {
     std::vector<PairSums> powers(threads.most());
     std::vector<std::array<double, 3>> totals(threads.most(), {0.0, 0.0, 0.0});
-    run(pairs,
-        {{force, row_of_forces(dim)}, {pairs.mirror ? nullptr : laws.taken, row_of_points(dim)}},
+    run(pairs, {{force, row_of_forces(dim)}, {laws.taken, row_of_points(dim)}},
         [&](int k, const FluidPairs &part, double *const *to) {
           ForceLaws own = laws;
           own.taken = to[1];
