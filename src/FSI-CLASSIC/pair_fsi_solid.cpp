@@ -296,18 +296,16 @@ template <int D, int TERMS> static void mirror_basis(const Mirror &m, double *si
     gradient_basis<D, TERMS>(m.sign, signs);
 }
 
-template <class T, class K, int TERMS>
-void PairFSISolid::add_image_gradients(const K &kernel, double half)
+// images are few: loops over them are pair by pair
+template <class K, int TERMS> void PairFSISolid::add_image_gradients(const K &kernel, double half)
 {
   constexpr int D = K::DIM, N = GradientSums<D, TERMS>::N, ROW = GradientSums<D, TERMS>::ROW;
   constexpr int COLUMNS = TERMS ? TERMS : D, MOMENTS = packed_size(TERMS);
   image_sums.assign((size_t) ROW * images.end(), 0.0);
   auto *const sums = reinterpret_cast<double(*)[ROW]>(image_sums.data());
   for (const RowList &list_ : own_images)
-    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
-      gradient_rows<decltype(number), K, TERMS>(list_.rows.data(), list_.rows.size(), kernel,
-                                                rate_records.data(), half, sums);
-    });
+    gradient_rows<double, K, TERMS>(list_.rows.data(), list_.rows.size(), kernel,
+                                    rate_records.data(), half, sums);
   for (int i = 0; i < atom->nlocal + atom->nghost; i++)
     for (int k = 0; k < N; k++) grad[i][k] += sums[i][k];
   images.for_each([&](int k, int of, const Mirror &m, bool counts) {
@@ -324,7 +322,7 @@ void PairFSISolid::add_image_gradients(const K &kernel, double half)
   });
 }
 
-template <class T, class K, int TERMS> void PairFSISolid::add_image_hourglass(const K &kernel)
+template <class K, int TERMS> void PairFSISolid::add_image_hourglass(const K &kernel)
 {
   constexpr int D = K::DIM, ROW = GradientSums<D, TERMS>::ROW;
   const int nall = atom->nlocal + atom->nghost;
@@ -336,28 +334,23 @@ template <class T, class K, int TERMS> void PairFSISolid::add_image_hourglass(co
   });
   auto *const rate = reinterpret_cast<double(*)[row_of_forces(D)]>(hourglass_rate.data());
   for (const RowList &list_ : own_images)
-    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
-      hourglass_rows<decltype(number), K, ROW>(list_.rows.data(), list_.rows.size(), kernel,
-                                               rate_records.data(), image_sums.data(),
-                                               Hourglass{xi}, rate);
-    });
+    hourglass_rows<double, K, ROW>(list_.rows.data(), list_.rows.size(), kernel,
+                                   rate_records.data(), image_sums.data(), Hourglass{xi}, rate);
   images.for_each([&](int k, int of, const Mirror &m, bool counts) {
     for (int d = 0; d < D && counts; d++) rate[of][d] += m.sign[d] * rate[k][d];
   });
 }
 
 // forces of images are folded when all are there
-template <class T, int TERMS, int FLAGS, class K, class Laws>
+template <int TERMS, int FLAGS, class K, class Laws>
 void PairFSISolid::add_image_forces(const K &kernel, Laws laws, const RowList (&lists)[2])
 {
   auto *const f = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(forces.data());
   laws.type = types_with_images.data();
   for (const int half : {0, 1}) {
     laws.newton = !half;    // what counts by half, images being no local atoms
-    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
-      force_rows<decltype(number), K, TERMS, FLAGS>(
-          lists[half].rows.data(), lists[half].rows.size(), kernel, force_records.data(), laws, f);
-    });
+    force_rows<double, K, TERMS, FLAGS>(lists[half].rows.data(), lists[half].rows.size(), kernel,
+                                        force_records.data(), laws, f);
   }
 }
 
@@ -455,7 +448,7 @@ void PairFSISolid::velocity_gradient(double dt)
   if (own.rows.empty() && !images.any()) return;
   with_loops([&](auto packed, const auto &kernel, auto terms) {
     using K = std::decay_t<decltype(kernel)>;
-    if (images.any()) add_image_gradients<Numbers<packed()>, K, terms()>(kernel, 0.5 * dt);
+    if (images.any()) add_image_gradients<K, terms()>(kernel, 0.5 * dt);
     auto *const sums = reinterpret_cast<double(*)[GradientSums<K::DIM, terms()>::ROW]>(grad[0]);
     run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
       gradient_rows<decltype(number), K, terms()>(own.rows.data(), own.rows.size(), kernel,
@@ -503,7 +496,7 @@ void PairFSISolid::advance_hourglass(double dt)
   if (!own.rows.empty() || images.any())
     with_loops([&](auto packed, const auto &kernel, auto terms) {
       using K = std::decay_t<decltype(kernel)>;
-      if (images.any()) add_image_hourglass<Numbers<packed()>, K, terms()>(kernel);
+      if (images.any()) add_image_hourglass<K, terms()>(kernel);
       auto *const rate = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(hourglass_rate.data());
       run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
         hourglass_rows<decltype(number), K, GradientSums<K::DIM, terms()>::ROW>(
@@ -636,10 +629,10 @@ void PairFSISolid::own_forces(const K &kernel, const PairLaws &laws, bool sums)
   // off has coefficients of zero
   const int named = (artificial_stress() > 0.0 ? STRESS : 0) | (sums ? SUMS : 0) |
       (has_artificial() || sums || TERMS > D ? VISCOSITY : 0);
+  if (images.any()) add_image_forces<TERMS, ALL>(kernel, laws, own_images);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
     if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)
                          : flags() == ALL) {
-      if (images.any()) add_image_forces<Numbers<PACKED>, TERMS, flags()>(kernel, laws, own_images);
       run_loop<Numbers<PACKED>>([&](auto number) FSI_INLINE_LAMBDA {
         force_rows<decltype(number), K, TERMS, flags()>(own.rows.data(), own.rows.size(), kernel,
                                                         force_records.data(), laws, of_rows);
@@ -672,7 +665,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
     force_rows<double, AnyKernel<D>, TERMS, BETWEEN>(others.rows.data(), others.rows.size(), any,
                                                      force_records.data(), laws, of_rows);
   if (images.any()) {
-    add_image_forces<double, TERMS, BETWEEN>(any, laws, other_images);
+    add_image_forces<TERMS, BETWEEN>(any, laws, other_images);
     images.fold<D>(of_rows, 1.0);
   }
 

@@ -161,18 +161,20 @@ void Shear::find_gradients(PairSets &pairs, const FluidParticles &particles, con
                 : find_gradients<3>(pairs, particles, laws);
 }
 
-// calls loop(number, kernel, image, mirror, pairs, set) for all sets of pairs
+// calls loop(number, kernel, image, mirror, pairs, set) for all sets of pairs; images are few, and
+// come pair by pair
 template <int D, class Loop>
 void Shear::for_rows(PairSets &pairs, const FluidParticles &particles, Loop loop) const
 {
   pairs.for_all(step.walls, particles, [&](const PairSet &set, const FluidPairs &of_set, int) {
     with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
       if constexpr (std::decay_t<decltype(kernel)>::DIM == D) {
-        const auto with = [&](auto number) {
-          of_set.mirror ? loop(number, kernel, std::true_type(), *of_set.mirror, of_set, set)
-                        : loop(number, kernel, std::false_type(), Mirror(), of_set, set);
-        };
-        have_packs() && !of_set.in.visible.part ? with(Pack()) : with(0.0);
+        if (of_set.mirror)
+          loop(0.0, kernel, std::true_type(), *of_set.mirror, of_set, set);
+        else if (have_packs() && !of_set.in.visible.part)
+          loop(Pack(), kernel, std::false_type(), Mirror(), of_set, set);
+        else
+          loop(0.0, kernel, std::false_type(), Mirror(), of_set, set);
       }
     });
   });
