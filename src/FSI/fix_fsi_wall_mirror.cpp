@@ -208,9 +208,9 @@ void FixFSIWallMirror::setup(int)
       if (species == RIGID && w.joins && w.distance(x[i]) < LEAST * disc->dx_of(type[i]))
         error->one(
             FLERR,
-            "Wall atom {} at {} is where images of its wall are, in the plane of symmetry {} "
-            "of fix {}: expected half a spacing before the plane, {:g}, or more",
-            atom->tag[i], place_text(x[i]), face(w), id, 0.5 * disc->dx_of(type[i]));
+            "Wall atom {} is {:g} before the plane of symmetry {} of fix {}: expected half a "
+            "spacing, {:g}, or more",
+            atom->tag[i], w.distance(x[i]), face(w), id, 0.5 * disc->dx_of(type[i]));
     }
   }
 }

@@ -137,19 +137,20 @@ namespace FSI {
             T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate,
                                               constant.floor, back, own);
             if (deep) p += pressure_below<T, FLAGS, D>(down, pi, pj, m, by);
-            T force[D], on_j[D], coupling[D], friction[D], coupled;
+            T force[D], on_j[D], coupling[D], friction[D], friction_j[D], coupled;
             push<T, KIND, FLAGS>(artificial, laws, constant, pi, pj, p, m, force, coupling,
                                  friction, coupled, by);
+            for (int d = 0; d < D; d++) friction_j[d] = -mirror.sign[d] * friction[d];
             hold_off<T, KIND, FLAGS>(in, laws, mirror, type_j, constant.bulk, j, pj.vol, m, force,
                                      coupled, by);
             react<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, m, force,
-                                  on_j, friction, by);
+                                  on_j, friction, friction_j, by);
             if (FLAGS & Flag::SUMS) account<T, KIND, FLAGS>(m, force, pj.v, coupled, by);
             for (int d = 0; d < D; d++) {
               sum[d] += force[d];
               if (FLAGS & Flag::IMAGES) on_all[d] += m.share * (force[d] + on_j[d]);
             }
-            if (FLAGS & Flag::SUMS) taken.add(coupling, friction, j);
+            if (FLAGS & Flag::SUMS) taken.add(coupling, friction, friction_j, j);
             L::add_rows(on_j, f, j);
           });
       taken.close(i);

@@ -496,8 +496,8 @@ namespace FSI {
     return loss;
   }
 
-  // Adds what coupling and friction take, as forces on i and on the neighbors j, of images turned as
-  // the wall turns them, to rows
+  // Adds what coupling and friction take, as forces on i and on the neighbors j, of images as their
+  // wall turns them, to rows
   template <class T, int D> struct Taken {
     T of_i[2 * D];
     double (*const rows)[row_of_points(D)];
@@ -507,7 +507,8 @@ namespace FSI {
     {
       for (T &s : of_i) s = 0.0;
     }
-    FSI_INLINE void add(const T (&coupling)[D], const T (&friction)[D], const int *j)
+    FSI_INLINE void add(const T (&coupling)[D], const T (&friction)[D], const T (&friction_j)[D],
+                        const int *j)
     {
       if (!rows) return;
       T of_j[2 * D];
@@ -515,7 +516,7 @@ namespace FSI {
         of_i[d] += coupling[d];
         of_i[D + d] += friction[d];
         of_j[d] = -mirror.sign[d] * coupling[d];
-        of_j[D + d] = -mirror.sign[d] * friction[d];
+        of_j[D + d] = friction_j[d];
       }
       Lanes<T>::add_rows(of_j, rows, j);
     }
@@ -634,16 +635,21 @@ namespace FSI {
                        const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
                        const T (&velocity_of_j)[D], const int *j, const RowConstants &constant,
                        const Between<T, D> &m, T (&force)[D], T (&on_j)[D], T (&friction)[D],
-                       Powers<T> &by)
+                       T (&friction_j)[D], Powers<T> &by)
   {
     // walls and solids have another velocity than i itself in places that are left over
     const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? m.g : m.weight * m.g;
-    if (FLAGS & Flag::SUMS)
-      for (int d = 0; d < D; d++) friction[d] += force[d];
+    T before[D], before_j[D];
+    for (int d = 0; d < D; d++) {
+      before[d] = force[d];
+      before_j[d] = on_j[d];
+    }
     const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, velocity_of_j, j, constant,
                                        there, m.x, m.v, force, on_j);
-    if (FLAGS & Flag::SUMS)
-      for (int d = 0; d < D; d++) friction[d] -= force[d];
+    for (int d = 0; d < D; d++) {
+      friction[d] += before[d] - force[d];
+      friction_j[d] = (FLAGS & Flag::IMAGES) ? friction_j[d] + before_j[d] - on_j[d] : -friction[d];
+    }
     if (FLAGS & Flag::SUMS)
       by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * m.share * loss : m.share * loss;
   }
@@ -670,13 +676,12 @@ namespace FSI {
                         const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
                         const T (&velocity_of_j)[D], const int *j, const RowConstants &constant,
                         const Between<T, D> &m, T (&force)[D], T (&on_j)[D], T (&friction)[D],
-                        Powers<T> &by)
+                        T (&friction_j)[D], Powers<T> &by)
   {
-    if (FLAGS & Flag::IMAGES)
-      for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
+    for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
     if (FLAGS & Flag::LAMINAR)
       slow<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, velocity_of_j, j, constant, m, force,
-                           on_j, friction, by);
+                           on_j, friction, friction_j, by);
     if (!(FLAGS & Flag::IMAGES))
       for (int d = 0; d < D; d++) on_j[d] = -force[d];
   }

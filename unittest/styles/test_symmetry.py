@@ -396,8 +396,8 @@ OF_WALLS = [PLANE, "group wall type 2", "fix w wall fsi/wall/particle"]
     (-0.5, [PLANE], {}, "before the plane of symmetry xlo 0"),
     (-0.6, [PLANE], {"solid_style": "fsi/solid"}, "behind the plane of symmetry"),
     (1.2, [PLANE], {}, "ends short of the plane"),
-    (0.1, OF_WALLS, OF_WALL, "where images of its wall are"),
-    (-3.5, OF_WALLS, OF_WALL, "where images of its wall are"),
+    (0.1, OF_WALLS, OF_WALL, "Wall atom .* before the plane of symmetry xlo"),
+    (-3.5, OF_WALLS, OF_WALL, "Wall atom .* before the plane of symmetry xlo"),
 ])
 def test_refused(x, commands, options, message):
     X = lattice([4, 4], DX) + [0.0 if x is None else (x - 0.5) * DX, 0, 0]
