@@ -355,11 +355,13 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
     double x[3];
     for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
     double vol = atom->rmass[i] / atom->rho[i];
-    // behind a mirror wall a solid is not there, but its image; walls of particles have no images
+    // behind a mirror wall a solid is not there, but its image
     if (state.species == SOLID)
       for (const auto &w : walls.wall) vol *= w.before(x, disc->dx_of(type));
     if (vol == 0.0) return;
-    const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, disc->cut) : 0;
+    const int mask_i = walls.any()
+        ? walls.near(x, disc->cut) & walls.mirroring(state.species == RIGID, atom->mask[i])
+        : 0;
     const bool may_hide = sight && fluid && sight->near(atom->x[i]);
     if (may_hide) sight->look_from(atom->x[i], kernel.cut);
     place.for_points(x, kernel.cut, [&](int k) {

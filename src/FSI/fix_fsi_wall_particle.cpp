@@ -66,6 +66,7 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
 // another one of this ID goes on with it
 FixFSIWallParticle::~FixFSIWallParticle()
 {
+  follow_commands();
   hand_on(id, Record(lmp, style));
 }
 

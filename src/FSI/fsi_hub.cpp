@@ -178,7 +178,6 @@ void StepState::gather_walls(LAMMPS *lmp)
   walls.find_reflections();
 }
 
-// walls of particles have images in planes of symmetry alone, behind others they go on themselves
 void StepState::find_near_walls(const Atom *atom, const Discretization &disc)
 {
   const int nall = atom->nlocal + atom->nghost;
@@ -188,7 +187,7 @@ void StepState::find_near_walls(const Atom *atom, const Discretization &disc)
     int near = 0;
     if (!inner.contains(x[i])) {
       const bool of_wall = disc.state[atom->type[i]].species == RIGID;
-      near = walls.near(x[i], disc.cut) & (of_wall ? walls.joined_by(atom->mask[i]) : ~0);
+      near = walls.near(x[i], disc.cut) & walls.mirroring(of_wall, atom->mask[i]);
     }
     wmask[i] = near;
   });

@@ -150,7 +150,7 @@ bool Sight::near(const double *x) const
 }
 
 // A solid that passes through a mirror wall goes on in its images, which fluids meet in place of
-// what is behind. Walls of particles have none: they go on behind a mirror themselves.
+// what is behind.
 void Sight::look_from(const double *x, double largest, double slack)
 {
   reach = largest;
@@ -169,7 +169,9 @@ void Sight::look_from(const double *x, double largest, double slack)
     s.dx = disc.dx_of(s.type);
     s.volume = disc.dim == 3 ? s.dx * s.dx * s.dx : s.dx * s.dx;
     s.thin = p.thin;
-    const bool behind = by_walls && disc.state[s.type].species == SOLID &&
+    const bool of_wall = disc.state[s.type].species == RIGID;
+    s.mirrors = by_walls ? walls.mirroring(of_wall, atom->mask[p.i]) : 0;
+    const bool behind = by_walls && !of_wall &&
         std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &w) {
                           return !w.finite && w.distance(p.x) < 0.0;
                         });
@@ -184,11 +186,10 @@ void Sight::see_images()
   const int mask = walls.near(from, reach);
   for (size_t k = 0, n = seen.size(); k < n; k++) {
     const Seen s = seen[k];
-    if (disc.state[s.type].species != SOLID) continue;
     const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
-    walls.images(mask & walls.near(y, reach), s.rsq, from, y, reach * reach,
+    walls.images(mask & s.mirrors & walls.near(y, reach), s.rsq, from, y, reach * reach,
                  [&](const Walls::Reflection &, double rsq, const double *d) {
-                   seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.volume, s.type, s.thin});
+                   seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.volume, s.type, 0, s.thin});
                  });
   }
 }

@@ -79,7 +79,7 @@ namespace FSI {
     struct Seen {
       double x[3], rsq;     // from x
       double dx, volume;    // spacing, of its cell
-      int type;
+      int type, mirrors;    // bits of the walls that it has images in
       bool thin;
     };
     std::vector<Seen> seen;

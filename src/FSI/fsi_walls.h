@@ -210,6 +210,9 @@ namespace FSI {
         if (wall[k].joins & mask) bits |= 1 << k;
       return bits;
     }
+    // Bits of the walls that a particle has images in. Walls of particles have them in planes of
+    // symmetry alone, behind others they go on themselves.
+    int mirroring(bool of_wall, int mask) const { return of_wall ? joined_by(mask) : ~0; }
 
     // as WallRow has them
     int near(const double *x, double cut, double behind = 0.0) const

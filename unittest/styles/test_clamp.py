@@ -363,17 +363,19 @@ def test_where_bodies_are_when_forces_are_found(fix, before, late):
         assert np.abs(ahead - (-0.5 if plain else 0.0)).max() < 1e-6
 
 
+@pytest.mark.parametrize("again", ["", "fix wp held fsi/wall/particle"])
 @pytest.mark.parametrize("fix", [f"rigid single {PLANE}", "rigid/small molecule"])
-def test_a_command_that_sets_all_in_motion_accelerates_no_wall(fix):
-    """Between runs all gets one velocity more, the body too: what follows is the same, to
-    round-off. With the difference as the acceleration of a step the pressure at the body stopped
-    the run."""
+def test_a_command_that_sets_all_in_motion_accelerates_no_wall(fix, again):
+    """Between runs all gets one velocity more, the body too, and the wall may be given again: what
+    follows is the same, to round-off. With the difference as the acceleration of a step the
+    pressure at the body stopped the run."""
     ends, dt, u = [], 1e-4, np.array([0.5, -0.2, 0.0])
     for boost in (0.0, 1.0):
         s, body = in_water(dt, fix=fix, commands=["fix push held addforce 0.1 0.05 0"])
         with s:
             s.run().run(20)
-            s.run_lines(f"velocity all set {' '.join(map(str, boost * u))} sum yes units box")
+            s.run_lines(f"velocity all set {' '.join(map(str, boost * u))} sum yes units box",
+                        again)
             s.run(20)
             ends.append(s.get("v") - boost * u)
     print(f"speed {np.linalg.norm(ends[0], axis=1).max():.1e}, apart "
