@@ -185,12 +185,12 @@ template <class F> void FixFSIWallParticle::for_pairs(size_t level, double cutsq
 {
   auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   if (!fluid) return;    // a script has put another style in its place since the last run
-  fluid->for_rows_with_walls([&](size_t of, const std::vector<Row> &rows, const Mirror *mirror) {
+  fluid->for_rows_with_walls([&](size_t of, const std::vector<Row> &rows, const Mirror &mirror) {
     if (of != level) return;
     for (const Row &row : rows) {
       if (!(atom->mask[row.j[0]] & groupbit)) continue;    // a type is in one such fix
       double x[3];
-      (mirror ? *mirror : Mirror()).reflect(atom->x[row.i], x);
+      mirror.reflect(atom->x[row.i], x);
       for_near(row, x, atom->x, disc->dim, cutsq, [&](int w, const double *d, double rsq) {
         f(w, row.i, d, rsq, mirror);
       });
@@ -304,33 +304,32 @@ void FixFSIWallParticle::sum_up()
   for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
 
   for_levels(*disc, [&](size_t level, const auto &kernel) {
-    for_pairs(
-        level, kernel.cutsq, [&](int w, int j, const double *d, double rsq, const Mirror *mirror) {
-          const double W = kernel.W(std::sqrt(rsq));
-          double *const s = sum[w];
-          s[0] += W;
-          const auto &g = step->body_forces.of_type[type[j]];
-          double p = pressure_of(j, atom, *disc, *step);
-          for (int k = 0; k < dim; k++) {
-            p += rho[j] * g[k] * d[k];
-            s[2 + k] += W * rho[j] * d[k];
-          }
-          s[1] += W * p;
-          double *m = s + first_moment;
-          if (linear || turns)
-            for (int k = 0; k < dim; k++) *m++ += W * d[k];
-          if (linear) {
-            for (int k = 0; k < dim; k++)
-              for (int l = k; l < dim; l++) *m++ += W * d[k] * d[l];
-            for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
-          }
-          if (stiffness)
-            s[first_stiffness] += W * disc->state[type[j]].rho0 * disc->state[type[j]].csq;
-          if (mixed) s[nsum - 1] += W * disc->state[type[j]].rho0;
-          if (!slip)
-            for (int k = 0; k < dim; k++)
-              s[2 + dim + k] += W * (mirror ? mirror->v[k] + mirror->sign[k] * v[j][k] : v[j][k]);
-        });
+    const auto add = [&](int w, int j, const double *d, double rsq, const Mirror &mirror) {
+      const double W = kernel.W(std::sqrt(rsq));
+      double *const s = sum[w];
+      s[0] += W;
+      const auto &g = step->body_forces.of_type[type[j]];
+      double p = pressure_of(j, atom, *disc, *step);
+      for (int k = 0; k < dim; k++) {
+        p += rho[j] * g[k] * d[k];
+        s[2 + k] += W * rho[j] * d[k];
+      }
+      s[1] += W * p;
+      double *m = s + first_moment;
+      if (linear || turns)
+        for (int k = 0; k < dim; k++) *m++ += W * d[k];
+      if (linear) {
+        for (int k = 0; k < dim; k++)
+          for (int l = k; l < dim; l++) *m++ += W * d[k] * d[l];
+        for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
+      }
+      if (stiffness) s[first_stiffness] += W * disc->state[type[j]].rho0 * disc->state[type[j]].csq;
+      if (mixed) s[nsum - 1] += W * disc->state[type[j]].rho0;
+      if (!slip)
+        for (int k = 0; k < dim; k++)
+          s[2 + dim + k] += W * (mirror.v[k] + mirror.sign[k] * v[j][k]);
+    };
+    for_pairs(level, kernel.cutsq, add);
   });
   sent = from_ghosts.get();
   if (force->newton_pair) swaps->reverse<Fix>(step->profile, this);
@@ -426,7 +425,7 @@ double FixFSIWallParticle::compute_scalar()
   if (update->whichflag == 0) FixFSI::ready(lmp, "Fix fsi/wall/particle");    // rows may be stale
   double counted = 0.0;
   for (size_t level = 0; level < disc->levels.size(); level++)
-    for_pairs(level, HUGE_VAL, [&](int w, int j, const double *, double rsq, const Mirror *) {
+    for_pairs(level, HUGE_VAL, [&](int w, int j, const double *, double rsq, const Mirror &) {
       const double dx_w = disc->dx_of(atom->type[w]),
                    limit = disc->state[atom->type[w]].guard *
           ((disc->levels[level].dx + dx_w) / (disc->dx + dx_w));

@@ -71,9 +71,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   std::unique_ptr<FSI::Message> to_ghosts, from_ghosts;
   std::vector<int> types_of_members();
   void enter_states(std::vector<FSI::State> &, const std::vector<int> &types);
-  // f(wall particle, fluid particle, distance between and its square, mirror) of those within a
-  // distance, if that is not beyond the kernel's support; mirror: it is the fluid's image in it, or
-  // null
+  // f(wall particle, fluid particle or its image, distance between and its square, its mirror) of
+  // those within a distance, if that is not beyond the kernel's support
   template <class F> void for_pairs(size_t level, double cutsq, F f) const;
   void sum_up();
   // per atom, over the fluid and its images: of W, p W, rho (x_wall - x) W, v W; with linear of

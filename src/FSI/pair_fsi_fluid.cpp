@@ -161,7 +161,7 @@ void PairFSIFluid::for_rows_with_walls(const UseOfRows &use)
   if (pairs.sets.empty()) return;    // not set up yet
   pairs.for_walls(step->walls,
                   [&](const PairSet &set, const std::vector<Row> &rows, const Mirror *mirror) {
-                    use(set.level, rows, mirror);
+                    use(set.level, rows, mirror ? *mirror : Mirror());
                   });
 }
 

@@ -78,10 +78,10 @@ class PairFSIFluid : public PairFSI {
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
   void add_gradient_sum(double *) override;
-  // Calls use(level of the scene, rows, mirror) for fluid particles, or what they are mirrored to,
-  // and wall particles that may be within the support
+  // Calls use(level of the scene, rows, mirror) for fluid particles, or their images in mirror, and
+  // wall particles that may be within the support
   using UseOfRows =
-      std::function<void(size_t level, const std::vector<FSI::Row> &, const FSI::Mirror *)>;
+      std::function<void(size_t level, const std::vector<FSI::Row> &, const FSI::Mirror &)>;
   void for_rows_with_walls(const UseOfRows &use);
 
  protected:
