@@ -9,6 +9,12 @@ add_library(fsi OBJECT ${FSI_SOURCES})
 # include folders of imported targets by -I, as in LAMMPS: then the compiler cache knows the objects of either way to build
 set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON NO_SYSTEM_FROM_IMPORTED ON)
 target_compile_features(fsi PRIVATE cxx_std_17)
+# what has no loop over particles that counts is compiled for size: 7 % of the plugin
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND CMAKE_BUILD_TYPE STREQUAL "Release")
+  set(_small ${FSI_SOURCES})
+  list(FILTER _small EXCLUDE REGEX "/KOKKOS/|/OPENMP/|pair_fsi|fix_fsi.cpp|fix_fsi_wall|fsi_fluid|fsi_shear|fsi_pair_sets|fsi_number|fsi_refine|fsi_bond|fsi_hub|fsi_wet|fsi_implicit|fsi_sight|fsi_surface|fsi_pack|fsi_probe|fsi_buffer|fsi_open_end|fsi_clamps")
+  set_property(SOURCE ${_small} APPEND PROPERTY COMPILE_OPTIONS -Os)
+endif()
 set(_instrumented ${FSI_SOURCES})
 if(FSI_SANITIZE OR FSI_COVERAGE)
   # the fluid's loops are one text for all kernels, and take minutes to compile with checks in it: those of the tests' usual kernel have them
