@@ -140,7 +140,6 @@ namespace FSI {
             T force[D], on_j[D], coupling[D], friction[D], friction_j[D], coupled;
             push<T, KIND, FLAGS>(artificial, laws, constant, pi, pj, p, m, force, coupling,
                                  friction, coupled, by);
-            for (int d = 0; d < D; d++) friction_j[d] = -mirror.sign[d] * friction[d];
             hold_off<T, KIND, FLAGS>(in, laws, mirror, type_j, constant.bulk, j, pj.vol, m, force,
                                      coupled, by);
             react<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, m, force,

@@ -678,7 +678,10 @@ namespace FSI {
                         const Between<T, D> &m, T (&force)[D], T (&on_j)[D], T (&friction)[D],
                         T (&friction_j)[D], Powers<T> &by)
   {
-    for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
+    for (int d = 0; d < D; d++) {
+      on_j[d] = -mirror.sign[d] * force[d];
+      friction_j[d] = -mirror.sign[d] * friction[d];
+    }
     if (FLAGS & Flag::LAMINAR)
       slow<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, velocity_of_j, j, constant, m, force,
                            on_j, friction, friction_j, by);

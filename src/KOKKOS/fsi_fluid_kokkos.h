@@ -258,7 +258,8 @@ namespace FSI {
         double of_pair[D], down[D];
         const bool deep = is_below(laws, mirror, type, down);
         if (!find<FLAGS | Flag::IMAGES>(artificial, viscous, i, pi, j, point[j], mirror,
-                                        deep ? &down : nullptr, of_pair, nullptr, by))
+                                        deep ? &down : nullptr, of_pair, SUMS ? rubbing : nullptr,
+                                        by))
           return;
         const Reflection &s = this->images.reflection[k];
         for (int d = 0; d < D; d++) {
@@ -297,11 +298,11 @@ namespace FSI {
       double p = shared_pressure<double, WITH_FLUID, D>(pi, pj, original.x, constant.extrapolate,
                                                         constant.floor, 1.0, false);
       if (down) p += pressure_below<double, WITH, D>(*down, pi, pj, m, by);
-      double on_j[D], coupling[D], friction[D], coupled;
+      double on_j[D], coupling[D], friction[D], friction_j[D], coupled;
       push<double, WITH_FLUID, WITH>(artificial, laws, constant, pi, pj, p, m, force, coupling,
                                      friction, coupled, by);
       react<double, WITH_FLUID, WITH>(viscous, laws, mirror, pi, pj, original.v, &j, constant, m,
-                                      force, on_j, friction, by);
+                                      force, on_j, friction, friction_j, by);
       if (SUMS) account<double, WITH_FLUID, WITH>(m, force, pj.v, coupled, by);
       for (int d = 0; d < D && rubbing; d++) rubbing[d] += friction[d];
       return true;
