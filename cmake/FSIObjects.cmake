@@ -9,10 +9,10 @@ add_library(fsi OBJECT ${FSI_SOURCES})
 # include folders of imported targets by -I, as in LAMMPS: then the compiler cache knows the objects of either way to build
 set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON NO_SYSTEM_FROM_IMPORTED ON)
 target_compile_features(fsi PRIVATE cxx_std_17)
-# what has no loop over particles that counts is compiled for size: 7 % of the plugin
+# what reads scripts, advises, reports or stops is compiled for size: it runs before the first step, at outputs, or at the end
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND CMAKE_BUILD_TYPE STREQUAL "Release")
   set(_small ${FSI_SOURCES})
-  list(FILTER _small EXCLUDE REGEX "/KOKKOS/|/OPENMP/|pair_fsi|fix_fsi.cpp|fix_fsi_wall|fsi_fluid|fsi_shear|fsi_pair_sets|fsi_number|fsi_refine|fsi_bond|fsi_hub|fsi_wet|fsi_implicit|fsi_sight|fsi_surface|fsi_pack|fsi_probe|fsi_buffer|fsi_open_end|fsi_clamps")
+  list(FILTER _small INCLUDE REGEX "/FSI/(fsi_advice|fsi_changes|fsi_commands|fsi_keywords|fsi_record|fsi_stop|fix_fsi_report|fix_fsi_spectrum)\\.cpp$")
   set_property(SOURCE ${_small} APPEND PROPERTY COMPILE_OPTIONS -Os)
 endif()
 set(_instrumented ${FSI_SOURCES})
