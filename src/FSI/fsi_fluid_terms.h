@@ -501,7 +501,7 @@ namespace FSI {
   template <class T, int D> struct Taken {
     T of_i[2 * D];
     double (*const rows)[row_of_points(D)];
-    const Mirror mirror;
+    const Mirror &mirror;
     FSI_INLINE Taken(double *rows_in, const Mirror &mirror_in) :
         rows(reinterpret_cast<double (*)[row_of_points(D)]>(rows_in)), mirror(mirror_in)
     {
