@@ -50,8 +50,7 @@ void ComputeFSIForce::init()
 
 bool ComputeFSIForce::counts(int i) const
 {
-  const int species = disc->state[atom->type[i]].species;
-  return (atom->mask[i] & groupbit) && (species == SOLID || species == RIGID);
+  return (atom->mask[i] & groupbit) && disc->state[atom->type[i]].is_body();
 }
 
 // a point inside the body: where its first particle is when lists are new, since it may go far

@@ -483,8 +483,8 @@ void ComputeFSIProbe::take(const Place &place)
 {
   std::vector<Fitted> fit;
   for (int i = 0; i < atom->nlocal; i++) {
-    const int type = atom->type[i], species = disc->state[type].species;
-    if (!(atom->mask[i] & groupbit) || (species != SOLID && species != RIGID)) continue;
+    const int type = atom->type[i];
+    if (!(atom->mask[i] & groupbit) || !disc->state[type].is_body()) continue;
     Fitted one = {atom->tag[i], atom->molecule[i], 1.0, {}};
     for (int d = 0; d < disc->dim; d++) one.r[d] = atom->x[i][d] - place.from[d];
     to_nearest_image(*domain, one.r);

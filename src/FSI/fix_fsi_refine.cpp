@@ -374,8 +374,7 @@ void FixFSIRefine::warn_of_bodies()
   warned = true;
   const int *const type = atom->type;
   const Cells bodies(atom, disc->dim, disc->cut, [&](int j) {
-    const int species = disc->state[type[j]].species;
-    return species == SOLID || species == RIGID;
+    return disc->state[type[j]].is_body();
   });
   const auto coarse = find_particles(atom, world, [&](int i) {
     const int now = level(i);

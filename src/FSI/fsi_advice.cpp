@@ -622,8 +622,7 @@ static void seen_through(const Census &c)
     return c.fluid(i);
   });
   for (size_t t = 1; t < c.present.size(); t++) {
-    const int species = disc.state[t].species;
-    if (disc.thin[t] != 0.0 || (species != SOLID && species != RIGID)) continue;
+    if (disc.thin[t] != 0.0 || !disc.state[t].is_body()) continue;
     const tagint first = first_that_sees_through(c, t, fluids);
     if (first < MAXTAGINT)
       c.warn("fluid atom {} sees fluid on the other side of a body or wall of type {}, "

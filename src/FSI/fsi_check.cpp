@@ -298,7 +298,6 @@ void Check::setup()
   judge(Stop::START);
 }
 
-// LAMMPS would say that a position is not finite, or that an atom is lost, but not which. (Open
 // LAMMPS would say that a position is not finite, or that an atom is lost, but not which. (What
 // leaves by an open end is deleted within the box.)
 void Check::positions()

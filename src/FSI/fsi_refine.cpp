@@ -204,8 +204,7 @@ Settling::Settling(LAMMPS *lmp, const Discretization &disc, const StepState &ste
   const Everywhere events(lmp, beyond, changed);
   // the others hold no particle off: what moves is within the support of an event
   const auto bodies = everywhere(lmp, of_body, [&](int j) {
-    const int species = disc.state[atom->type[j]].species;
-    return (species == SOLID || species == RIGID) && events.nearest(atom->x[j]) < beyond * beyond;
+    return disc.state[atom->type[j]].is_body() && events.nearest(atom->x[j]) < beyond * beyond;
   });
   mobility.assign(atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -280,7 +279,7 @@ void Settling::run(int sweeps)
     const bool counts = step.walls.is_before_planes(atom->x[j]);
     // densities of walls, and of solids by sums, are made anew when a run begins
     const State &s = disc.state[atom->type[j]];
-    const double rho = s.species == RIGID || s.species == SOLID ? s.rho0 : atom->rho[j];
+    const double rho = s.is_body() ? s.rho0 : atom->rho[j];
     points[POINT * j + 3] = counts ? atom->rmass[j] / rho : 0.0;
   }
   mirrors.assign(1, Mirror(step.walls, {}));

@@ -81,8 +81,7 @@ Sight::Backfill Sight::beyond(size_t level, int type, double distance) const
 // bodies count, too, where a thin one goes on as one of them.
 bool Sight::counts(int type) const
 {
-  const int species = disc.state[type].species;
-  return types[type] != 0.0 || species == SOLID || species == RIGID;
+  return types[type] != 0.0 || disc.state[type].is_body();
 }
 
 void Sight::find_bodies()

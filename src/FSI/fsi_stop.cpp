@@ -110,8 +110,7 @@ Stop::Neighbor Stop::nearest_body(const Finding &all) const
   const int *const type = atom->type;
   const auto for_near = [&](auto f) {
     for (int i = 0; i < atom->nlocal; i++) {
-      const int species = disc.state[type[i]].species;
-      if (species != SOLID && species != RIGID) continue;
+      if (!disc.state[type[i]].is_body()) continue;
       double d[3];
       for (int k = 0; k < 3; k++) d[k] = k < disc.dim ? atom->x[i][k] - all.x[k] : 0.0;
       if (!std::isfinite(d[0] + d[1] + d[2])) continue;
