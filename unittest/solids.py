@@ -84,16 +84,18 @@ class Reference:
 
     def axes(self, X, w):
         """Principal axes of the neighbors, and those of the lattice, as rows."""
-        prefer = 1e-4 * np.arange(self.dim)
-        principal = np.linalg.eigh(X.T @ (w[:, None] * X) * (1 - np.diag(prefer)))[1].T[::-1]
-        lattice = []
+        tie, prefer, lattice = 1e-6, np.arange(self.dim), []
+        moments = X.T @ (w[:, None] * X)
+        value, vectors = np.linalg.eigh(moments)
+        if np.diff(value).min() < tie * value[-1]:
+            _, vectors = np.linalg.eigh(moments * (1 - 1e-4 * np.diag(prefer)))
         for _ in range(self.dim):
             across = X - X @ np.reshape(lattice,
                                         (-1, self.dim)).T @ np.reshape(lattice, (-1, self.dim))
             far = (across**2).sum(1) <= 0.5 * (X**2).sum(1)
-            nearest = across[np.argmin(np.where(far, np.inf, X**2 @ (1 + prefer)))]
+            nearest = across[np.argmin(np.where(far, np.inf, X**2 @ (1 + tie * prefer)))]
             lattice.append(nearest / np.linalg.norm(nearest))
-        return principal, np.array(lattice)
+        return vectors.T[::-1], np.array(lattice)
 
     def F(self, x):
         x = x[:, :self.dim]

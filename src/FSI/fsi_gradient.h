@@ -186,8 +186,9 @@ namespace FSI {
     // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel,
     // h = 1 to 2 dx), all others 0.38 or more, in the axes chosen
     static constexpr double ONE_SIDED = 0.3;
-    // among equals a preference of this size for the box's axes chooses, and not round-off
-    static constexpr double PREFERENCE = 1.0e-4;
+    // What is equal to within TIE, as on a lattice, the box's axes choose between by a preference,
+    // and not round-off. In disorder they have no part: a body's weights turn with it.
+    static constexpr double TIE = 1.0e-6, PREFERENCE = 1.0e-4;
 
     template <int TERMS> struct Fit {
       double axes[D][D], C[D * TERMS], least;
@@ -205,8 +206,13 @@ namespace FSI {
       for (int j = 0; j < n; j++)
         for (int a = 0, m = 0; a < D; a++)
           for (int b = 0; b <= a; b++) moments[m++] += w[j] * dX[j * D + b] * dX[j * D + a];
-      for (int a = 0; a < D; a++) moments[packed_size(a) + a] *= 1.0 - PREFERENCE * a;
       principal<D>(moments, value, axes);
+      bool tie = false;
+      for (int k = 1; k < D; k++) tie = tie || value[k - 1] - value[k] < TIE * value[0];
+      if (tie) {
+        for (int a = 0; a < D; a++) moments[packed_size(a) + a] *= 1.0 - PREFERENCE * a;
+        principal<D>(moments, value, axes);
+      }
       return value[D - 1] > FLAT * value[0];
     }
 
@@ -217,8 +223,7 @@ namespace FSI {
       distances.resize(n);
       for (int j = 0; j < n; j++) {
         double distance = 0.0;
-        for (int a = 0; a < D; a++)
-          distance += (1.0 + PREFERENCE * a) * dX[j * D + a] * dX[j * D + a];
+        for (int a = 0; a < D; a++) distance += (1.0 + TIE * a) * dX[j * D + a] * dX[j * D + a];
         distances[j] = distance;
       }
       for (int k = 0; k < D; k++) {

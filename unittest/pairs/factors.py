@@ -114,7 +114,7 @@ FACTORS = {
                            "buffer 0.06"},
         "stream": {"regions": "region zone block [-0.11 -0.02] INF INF INF INF units box",
                    "lines": "fix stream fluid fsi/stream <0.4> 0 NULL region zone rate 50 density "
-                   "20", "settings": {"stream": True}},
+                   "20 along x", "settings": {"stream": True}},
     },
     "float": {"no float": {},
               "floating": {"settings": {"buoy": True}, "lines": "fix buoy buoy rigid single{flat}"},
@@ -161,6 +161,7 @@ FACTORS = {
     "lattice": {"even": {}, "unequal masses": {"settings": {"uneven": 0.1}},
                 "turned body": {"settings": {"turn": 0.3}},
                 "two materials": {"settings": {"soft": True}}},
+    "packing": {"as cut": {}, "packed": {"settings": {"packed": True}}},
     "setup": {"usual setup": {}, "boundary m": {"settings": {"edge": "m"}},
               "far ghosts": {"regions": "comm_modify cutoff 0.065"},
               "slabs": {"before": "atom_modify map hash sort 0 0.0\nprocessors 1 * *"}},
@@ -189,7 +190,7 @@ TOTAL = all_of("solid", *UPDATED)
 NOT_DRAWN = {
     "there is nothing to touch, hold, or take sub-steps": [("no solid", all_of("contact") + all_of(
         "body") + ["sub-steps", "adaptive sub-steps", "distance", "extrapolated", "no guard",
-                   "solid slip", "turned body", "two materials", "setforce", "spring"])],
+                   "solid slip", "turned body", "two materials", "packed", "setforce", "spring"])],
     "sub-steps are those of fix fsi or those of fix fsi/dt": [("sub-steps", "adaptive sub-steps")],
     "what is bonded to its image ends at the plane, along it": [("symmetry plane", "turned body")],
     "a group has one hole": [("create_atoms", ("delete_atoms", "delete, no compress"))],
@@ -377,7 +378,7 @@ ELSEWHERE = {
     "fix_fsi_report": {"test_report": "fsi/report file all"},
     "fix_fsi_spectrum": {"test_spectrum": "fsi/spectrum every window none hann hann2 detrend mean "
                          "linear peaks file"},
-    "fix_fsi_stream": {"test_stream": "along x y z"},
+    "fix_fsi_stream": {"test_stream": "y z"},
     "fix_fsi_stress": {"test_solid": "plane strain"},
     "fix_fsi_wall_mirror": {"test_walls": "guard hydrostatic zlo", "test_inlet": "zhi"},
     "fix_fsi_wall_particle": {"test_wall_particles": "yes mean tension closed",
@@ -387,7 +388,7 @@ ELSEWHERE = {
     "fsi_clamp": {"test_clamp_command": "fsi/clamp"},
     "fsi_dump": {"test_presets": "fsi/dump file"},
     "fsi_run": {"test_presets": "fsi/run"},
-    "fsi_pack": {"test_packing": "fsi/pack region stl outline still steps"},
+    "fsi_pack": {"test_packing": "stl outline"},
     "fsi_set": {"test_density": "pressure hydrostatic volume"},
     "pair_fsi_fluid": {"test_density": "couple full surface", "test_refine": "levels",
                        "test_shift": "no",

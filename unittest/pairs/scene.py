@@ -38,13 +38,60 @@ def turned(text, sign):
                   else f"{-float(m[2])!r} {-float(m[1])!r}", text)
 
 
+# what three numbers, one for each axis, follow; or three pairs, or twice three
+VECTORS = {"boundary": 1, "processors": 1, "origin": 1, "vector": 1, "velocity": 1, "set": 1,
+           "move": 1, "wiggle": 1, "linear": 1, "addforce": 1, "setforce": 1, "fsi/stream": 1,
+           r"tether \S+": 1, r"region \w+ block": 2, r"rotate \S+": -2, "fsi/move variable": -2}
+
+
+def on_axes(text, axes):
+    """A deck whose axis k is axis axes[k] of this one"""
+    new = {"xyz"[a]: "xyz"[k] for k, a in enumerate(axes)}
+    number = r"(?:-?[\d.]+(?:e-?\d+)?|NULL|INF|EDGE|v_\w+|[*fpms])"
+
+    def ordered(words, width):
+        triples = [words] if width > 0 else [words[:3], words[3:]]
+        return " ".join(" ".join(some[a * abs(width):(a + 1) * abs(width)] if width > 0
+                                 else some[a:a + 1])
+                        for some in triples for a in axes)
+
+    for head, width in VECTORS.items():
+        text = re.sub(rf"(?<!\S)({head})((?: {number}){{{3 * abs(width)}}})(?!\S)",
+                      lambda m, w=width: f"{m[1]} {ordered(m[2].split(), w)}", text)
+    text = re.sub(r"\b([xyz])(lo|hi)\b", lambda m: new[m[1]] + m[2], text)
+    if axes == (1, 0, 2):    # a reflection: what turns does so the other way
+        text = text.replace("variable lean equal ", "variable lean equal 0-")
+    return re.sub(r"(?<= )[xyz](?= delta)|(?<=range )[xyz]|(?<=along )[xyz]",
+                  lambda m: new[m[0]], text)
+
+
+def other_type(k):
+    return 9 - k
+
+
+def with_other_types(text):
+    """A deck whose types count down"""
+    def all_types(m):
+        return m[1] + re.sub(r"\d+", lambda k: str(other_type(int(k[0]))), m[2])
+
+    text = re.sub(r"(\btypes? )(\d+(?: \d+)*)", all_types, text)
+    text = re.sub(r"(\b(?:thin|spacing|create_atoms) )(\d+)(?!\.)", all_types, text)
+    # in rising order, as LAMMPS wants a pair of types
+    text = re.sub(r"pair_coeff (\d) (\d)", lambda m: "pair_coeff {} {}".format(
+        *sorted(other_type(int(k)) for k in m.groups())), text)
+    return re.sub(r"(pair_coeff \* \* (?:\S+/\S+ )?NULL )(.*)",
+                  lambda m: m[1] + " ".join(reversed(m[2].split())), text)
+
+
 @dataclass
 class PairScene:
     """A row as a scene. `sign` -1 mirrors it, `frame` is a velocity added to all, `seed` of an
-    order and numbering other than the usual one."""
+    order and numbering other than the usual one, `axes` which old ones the new ones are."""
 
     row: list
     sign: int = 1
+    axes: tuple = (0, 1, 2)
+    backward: bool = False    # fixes that follow fix fsi, and types
     frame: float = 0.0
     shuffled: int = 0
     skin: float = 0.3
@@ -140,7 +187,7 @@ class PairScene:
         """height of what is held of a body"""
         return 0.95 if self.low < 0 else self.low + 2.05    # between rows of either spacing
 
-    def bodies(self):
+    def bodies(self, turned=True):
         """(particles, molecule IDs)"""
         if not self.has["body"]:
             return np.zeros((0, 3)), np.zeros(0, int)
@@ -158,7 +205,7 @@ class PairScene:
                            one((3, 7), (y[0], y[0] + thick))])
         else:
             x = one((1, 1 + wide))
-        turn = self.setting("turn", 0)
+        turn = self.setting("turn", 0) if turned else 0
         if turn:
             about = np.array([3 * DX, self.low * DX, 0])
             x = about + (x - about) @ np.array([[np.cos(turn), np.sin(turn), 0],
@@ -232,9 +279,11 @@ class PairScene:
         if not self.flies:
             v[held] = 0
         v[kind == FLOOR] = 0
-        x = x + np.where(fixed[:, None], 0, random.uniform(-0.06, 0.06, x.shape) * size) * flat
-        x[:, 1] = np.where(solids & ~held, np.maximum(x[:, 1], self.root * DX + 1e-5),
-                           x[:, 1]) if self.setting("held") else x[:, 1]
+        x = x + np.where(np.isin(kind, (FLOOR, BUOY))[:, None], 0,
+                         random.uniform(-0.06, 0.06, x.shape) * size) * flat
+        if self.setting("held") and not self.setting("all held"):
+            x[:, 1] = np.where(held, np.minimum(x[:, 1], self.root * DX - 1e-5), np.where(
+                solids, np.maximum(x[:, 1], self.root * DX + 1e-5), x[:, 1]))
         rho0 = np.array([0, 1000, 1100, 1000, 600, 1000, 2000, 800, 1300.])[kind]
         name, hdx = self.has["kernel"].split()
         psi = {s: Kernel(name, self.dim, float(hdx) * s).lattice_sum(s, self.dim)
@@ -262,24 +311,27 @@ class PairScene:
         p = self.particles
         n, signs = len(p["x"]), np.array([self.sign, 1, 1])
         x, v = p["x"] * signs, (p["v"] + np.array([1, 0.5, self.dim == 3]) * self.frame) * signs
+        x, v = x[:, self.axes], v[:, self.axes]
         ids, order = np.arange(1, n + 1), np.arange(n)
         if self.shuffled:
             random = np.random.default_rng(self.shuffled)
             ids, order = random.permutation(ids), random.permutation(n)
         lines = ["scene of pairs", "", f"{n} atoms", "8 atom types", ""]
         box = self.box if self.sign > 0 else np.array([-self.box[0][::-1], *self.box[1:]])
-        lines += [f"{lo!r} {hi!r} {a}lo {a}hi" for (lo, hi), a in zip(box.tolist(), "xyz")]
+        lines += [f"{lo!r} {hi!r} {a}lo {a}hi"
+                  for (lo, hi), a in zip(box[list(self.axes)].tolist(), "xyz")]
         grains = bool(self.setting("grains"))
+        types = other_type(p["type"]) if self.backward else p["type"]
         lines += ["", f"Atoms # {'hybrid' if grains else 'fsi'}", ""]
         for k in order:
             where = " ".join(map(repr, x[k].tolist()))
             mol, rho, mass = p["mol"][k], float(p["rho"][k]), float(p["mass"][k])
             if grains:
                 grain = p["type"][k] == GRAIN
-                lines.append(f"{ids[k]} {p['type'][k]} {where} {mol} {0.0 if grain else rho!r} "
+                lines.append(f"{ids[k]} {types[k]} {where} {mol} {0.0 if grain else rho!r} "
                              f"{rho if grain else mass!r} {0.004 if grain else 0.0}")
             else:
-                lines.append(f"{ids[k]} {mol} {p['type'][k]} {rho!r} {mass!r} {where}")
+                lines.append(f"{ids[k]} {mol} {types[k]} {rho!r} {mass!r} {where}")
         zeros = " 0 0 0" if grains else ""
         lines += ["", "Velocities", "",
                   *(f"{ids[k]} {' '.join(map(repr, v[k].tolist()))}{zeros}" for k in order)]
@@ -357,14 +409,12 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         fine = f"spacing 5 {DX * 2**(-1 / self.dim)!r}" if self.has["refine"] else ""
         return f"fix fsi moves fsi {DX} {self.has['kernel']} {self.has['fsi']} {fine}"
 
-    def physics(self):
+    def physics(self, starts):
         """What follows pair_style, and follows a restart file, too."""
         has = self.has
         lines = [self.coeff, has["regions"], "neigh_modify every 1 delay 0 check yes",
                  f"neighbor {self.skin * DX!r} bin", self.fsi]
-        if has["stress"]:
-            lines.append(f"fix stress all fsi/stress {has['stress']}")
-        lines += self.fixes()
+        lines += [*self.surroundings(), *(self.packing() if starts else []), *self.others()]
         lines.append("compute state all fsi/atom rho")
         if self.energy:
             lines.append("compute energy all fsi/energy")
@@ -372,17 +422,42 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         return "\n".join(filter(None, lines))
 
     def fixes(self):
-        has, lines = self.has, []
+        return self.surroundings() + self.others()
+
+    def surroundings(self):
+        has = self.has
+        lines = [f"fix stress all fsi/stress {has['stress']}"] if has["stress"] else []
         if has["gravity"]:
             lines.append(f"fix gravity {'all' if has['gravity'] is True else has['gravity']} "
                          "gravity 9.81 vector <0.3> -1 0")
-        lines += self.walls() + self.ends()
-        lines.append(has["lines"].replace("{flat}", " force * on on off torque * off off on"
-                                          if self.dim == 2 else "")
-                     .replace("{still}", "NULL" if self.dim == 2 else "v_zero"))
+        return self.ordered(lines + self.walls() + self.ends())
+
+    def ordered(self, lines):
+        return lines[::-1] if self.backward else lines
+
+    def packing(self):
+        """Fluids fit the block that the bodies were cut as. A few steps: what is drawn at random is
+        far from a lattice, and differences of round-off grow."""
+        if not self.setting("packed"):
+            return []
+        x, _ = self.bodies(turned=False)
+        half = self.setting("own", 1.0) * DX / 2
+        (a, b), (c, d), (e, f) = np.stack([x.min(0) - half, x.max(0) + half], 1).tolist()
+        z = f"{e!r} {f!r}" if self.dim == 3 else "INF INF"
+        turn = self.setting("turn", 0)
+        about = f"rotate v_lean <{3 * DX!r}> {self.low * DX!r} 0 0 0 1" if turn else ""
+        return [f"variable lean equal <{turn}>",
+                f"region hull block [{a!r} {b!r}] {c!r} {d!r} {z} {about} units box",
+                "fsi/pack NULL fluid region hull still body steps 20"]
+
+    def others(self):
+        has = self.has
+        lines = has["lines"].replace("{flat}", " force * on on off torque * off off on"
+                                      if self.dim == 2 else "").replace(
+            "{still}", "NULL" if self.dim == 2 else "v_zero").split("\n")
         if has["refine"]:
             lines.append(f"fix refine water fsi/refine 6 types 1 5 {has['refine']}")
-        return lines
+        return self.ordered(lines)
 
     def ends(self):
         p0 = 500 if "background" in self.row else 0
@@ -442,10 +517,10 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
 
     def text(self, folder):
         a, b, c = (round(n * DT / self.dt) for n in STEPS)
-        return turned(f"""{f'package omp {self.threads}{chr(10)}suffix omp' if self.threads else ''}
+        text = turned(f"""{f'package omp {self.threads}{chr(10)}suffix omp' if self.threads else ''}
 {self.head(f'{folder}/scene.data')}
 {self.pair}
-{self.physics()}
+{self.physics(starts=True)}
 {self.outputs() if self.watched else ''}
 {"comm_style tiled" if self.balanced else ""}
 {"fix balance all balance 5 1.0 rcb" if self.balanced else ""}
@@ -460,6 +535,8 @@ run 0
 write_restart {folder}/mid.restart
 {self.steps(c)}
 {self.end(folder)}""", self.sign)
+        text = with_other_types(text) if self.backward else text
+        return on_axes(text, self.axes)
 
     def steps(self, n):
         return f"run {11 * n // 16}\nrun {n - 11 * n // 16}" if self.cut else f"run {n}"
@@ -484,7 +561,8 @@ write_restart {folder}/mid.restart
     def continued(self, folder):
         """From the restart file"""
         return turned(f"read_restart {folder}/mid.restart\n"
-                      f"{self.pair if self.setting('pair again') else ''}\n{self.physics()}\n"
+                      f"{self.pair if self.setting('pair again') else ''}\n"
+                      f"{self.physics(starts=False)}\n"
                       f"{self.has['stays']}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
 
     def end(self, folder):

@@ -15,7 +15,7 @@ from fsi import paths
 
 from . import factors
 from .factors import FACTOR_OF, FACTORS, FIRST
-from .scene import DT, DX, FLOOR, HALF, PairScene, go, go_on_ranks
+from .scene import DT, DX, FLOOR, HALF, PairScene, go, go_on_ranks, other_type
 
 REFUSED = factors.refused_rows()
 # After 40 steps relative to the scene, its largest velocity, its density: growth of round-off,
@@ -120,11 +120,11 @@ def finite(r):
     assert len(set(s.id)) == len(s.id) and s.id.min() > 0
     n = len(r.scene.particles["x"])
     assert n <= 2050 and (r.scene.open or r.scene.has["refine"] or r.scene.setting("spot")
-                          or len(s.id) == n)
+                          or r.scene.setting("packed") or len(s.id) == n)
 
 
 def keeps_mass(scene):
-    return not given(scene, "fsi/set")
+    return not given(scene, "fsi/set", "packed")
 
 
 def mass(r):
@@ -196,6 +196,27 @@ def mirror(r):
     same(r.scene, r.base, other, ROUND)
 
 
+def other_axes(r):
+    """Of other names nothing depends: x and y change places, or all three move on."""
+    axes = (1, 0, 2) if r.scene.dim == 2 else (1, 2, 0)
+    other = r.other(axes=axes)
+    old = np.argsort(axes)
+    other.x, other.v = other.x[:, old], other.v[:, old]
+    same(r.scene, r.base, other, ROUND)
+
+
+def any_order(scene):
+    """What LAMMPS' fix momentum takes, other fixes see before or after."""
+    return ordered(scene) and not given(scene, "momentum")
+
+
+def backward(r):
+    """In which order fixes and types come does not matter."""
+    other = r.other(backward=True)
+    other.type = other_type(other.type)
+    same(r.scene, r.base, other, ROUND)
+
+
 def restart(r):
     """Bit for bit, but fix rigid computes bodies anew"""
     r.base    # pylint: disable=pointless-statement
@@ -211,7 +232,8 @@ def alone(scene):
     return not (scene.walled or scene.plane or scene.open or scene.has["gravity"]
                 or scene.setting("stream") or given(scene, "clamped", "fsi/set", "background",
                                                     "hypo updated", "velocity", "addforce",
-                                                    "setforce", "spring", "viscous", "momentum")
+                                                    "setforce", "spring", "viscous", "momentum",
+                                                    "packed")
                 or scene.setting("spot") or given(scene, "yield stress")
                 and given(scene, "sub-steps", "adaptive sub-steps"))
 
@@ -244,6 +266,7 @@ INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (
               "balanced": (ordered, balanced), "skin": (always, skin), "watched": (always, watched),
               "cut": (ordered, cut), "idle": (ordered, idle),
               "numbering": (no_levels, numbering), "mirror": (ordered, mirror),
+              "axes": (ordered, other_axes), "backward": (any_order, backward),
               "restart": (always, restart), "momentum": (alone, momentum),
               "frame": (drifts, galilei)}
 SAMPLE = {"four ranks": 8, "balanced": 3}    # asked of one scene in so many
@@ -270,6 +293,7 @@ def test_pairs(seed, k, invariant):
 # would be asked
 OUTSIDE = {*factors.all_of("walls"), *factors.all_of("ends"), *factors.all_of("gravity"),
            *factors.all_of("symmetry"), *factors.all_of("other fix"), "velocity", "create_atoms",
+           "packed",
            "clamped", "fsi/set", "background",
            "hypo updated", "delete_atoms", "delete, no compress"}
 
@@ -351,6 +375,7 @@ FOUND = {
     "shifting-between-ends-of-a-fix-that-is-given-again": (
         ["background", "shift every 3", "absorbing ends"], "idle"),
     "acceleration-of-a-wall-that-is-given-again": (["floating"], "idle"),
+    "gradients-that-the-box-had-a-part-in": (["3D", "svk"], "axes"),
     "thickness-of-thin-bodies": (["3D", "quintic", "no walls", "thin", "rigid", "gravity"], "skin"),
 }
 
