@@ -151,8 +151,9 @@ def threads(r):
 
 
 def balanced(r):
-    same(r.scene, r.base, go_on_ranks(replace(r.scene, balanced=True), r.folder / "balanced", 2),
-         ROUND)
+    """Lists are built when ranks change, too."""
+    other = replace(r.scene, balanced=True, counted=r.scene.open)
+    same(r.scene, r.counted, go_on_ranks(other, r.folder / "balanced", 2), ROUND)
 
 
 def skin(r):
