@@ -212,15 +212,17 @@ def _method(definition, curve, certain):
 
 
 def _thinnest(rows):
-    """{value of the resolution: extent of the thinnest body in particles}."""
+    """{value of the resolution: extent of the thinnest body in particles}; none if methods have
+    bodies of several."""
     found = {}
     for row in rows:
         if row["role"] == "curve":
             sizes = [min(body[2]) for body in row["point"].get("bodies") or ()
                      if body[0].startswith("body") and body[2]]
             if sizes:
-                found[f"{row['x']:.4g}"] = round(float(min(sizes)), 2)
-    return found
+                found.setdefault(f"{row['x']:.4g}", set()).add(round(float(min(sizes)), 2))
+    return {} if any(len(sizes) > 1 for sizes in found.values()) else {
+        x: size for x, (size,) in found.items()}
 
 
 # ---- picture ----
