@@ -95,6 +95,7 @@ class PairScene:
     frame: float = 0.0
     shuffled: int = 0
     skin: float = 0.3
+    lists: str = "bin"
     newton: str = "on"
     dt: float = DT
     energy: bool = False
@@ -413,7 +414,7 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         """What follows pair_style, and follows a restart file, too."""
         has = self.has
         lines = [self.coeff, has["regions"], "neigh_modify every 1 delay 0 check yes",
-                 f"neighbor {self.skin * DX!r} bin", self.fsi]
+                 f"neighbor {self.skin * DX!r} {self.lists}", self.fsi]
         lines += [*self.surroundings(), *(self.packing() if starts else []), *self.others()]
         lines.append("compute state all fsi/atom rho")
         if self.energy:

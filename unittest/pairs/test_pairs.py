@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 from fsi import paths
+from scenes import run
 
 from . import factors
 from .factors import FACTOR_OF, FACTORS, FIRST
-from .scene import DT, DX, FLOOR, HALF, PairScene, go, go_on_ranks, other_type
+from .scene import DT, DX, FLOOR, HALF, PairScene, go, go_on_ranks, other_type, read
 
 REFUSED = factors.refused_rows()
 # After 40 steps relative to the scene, its largest velocity, its density: growth of round-off,
@@ -139,7 +140,8 @@ def mass(r):
 
 
 def two_ranks(r):
-    same(r.scene, r.base, go_on_ranks(replace(r.scene, newton="off"), r.folder / "ranks", 2), ROUND)
+    other = replace(r.scene, newton="off", lists="multi")
+    same(r.scene, r.base, go_on_ranks(other, r.folder / "ranks", 2), ROUND)
 
 
 def four_ranks(r):
@@ -157,7 +159,7 @@ def balanced(r):
 
 
 def skin(r):
-    r.alike(skin=1.0)
+    r.alike(skin=1.0, lists="nsq")
 
 
 def watched(r):
@@ -226,6 +228,17 @@ def restart(r):
     same(scene, r.base, other, ROUND if scene.flies or scene.setting("buoy") else 0.0, ids=True)
 
 
+def restart_on_ranks(r):
+    """The restart file of one rank, read by two"""
+    r.base    # pylint: disable=pointless-statement
+    folder = r.folder / "restart on ranks"
+    folder.mkdir()
+    (r.folder / "base/mid.restart").rename(folder / "mid.restart")
+    run(folder, r.scene.continued("."), 2)
+    (folder / "mid.restart").rename(r.folder / "base/mid.restart")
+    same(r.scene, r.base, read(folder), ROUND, ids=True)
+
+
 def alone(scene):
     """Nothing outside acts. Shifting with a background, hourglass forces of pair_style fsi/solid,
     which turn with particles, a hole and a new density change momentum; with implicit viscosity
@@ -268,9 +281,10 @@ INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (
               "cut": (ordered, cut), "idle": (ordered, idle),
               "numbering": (no_levels, numbering), "mirror": (ordered, mirror),
               "axes": (ordered, other_axes), "backward": (any_order, backward),
-              "restart": (always, restart), "momentum": (alone, momentum),
+              "restart": (always, restart), "restart on ranks": (always, restart_on_ranks),
+              "momentum": (alone, momentum),
               "frame": (drifts, galilei)}
-SAMPLE = {"four ranks": 8, "balanced": 3}    # asked of one scene in so many
+SAMPLE = {"four ranks": 8, "balanced": 3, "restart on ranks": 8}    # asked of one scene in so many
 
 
 def pytest_generate_tests(metafunc):
