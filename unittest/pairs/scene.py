@@ -38,10 +38,11 @@ def turned(text, sign):
                   else f"{-float(m[2])!r} {-float(m[1])!r}", text)
 
 
-# what three numbers, one for each axis, follow; or three pairs, or twice three
-VECTORS = {"boundary": 1, "processors": 1, "origin": 1, "vector": 1, "velocity": 1, "set": 1,
-           "move": 1, "wiggle": 1, "linear": 1, "addforce": 1, "setforce": 1, "fsi/stream": 1,
-           r"tether \S+": 1, r"region \w+ block": 2, r"rotate \S+": -2, "fsi/move variable": -2}
+# what vectors follow: (how many, words of each for one axis)
+VECTORS = {**dict.fromkeys(("boundary", "processors", "origin", "vector", "velocity", "set", "move",
+                            "wiggle", "linear", "addforce", "setforce", "fsi/stream",
+                            r"tether \S+"), (1, 1)),
+           r"region \w+ block": (1, 2), r"rotate \S+": (2, 1), "fsi/move variable": (2, 1)}
 
 
 def on_axes(text, axes):
@@ -49,18 +50,14 @@ def on_axes(text, axes):
     new = {"xyz"[a]: "xyz"[k] for k, a in enumerate(axes)}
     number = r"(?:-?[\d.]+(?:e-?\d+)?|NULL|INF|EDGE|v_\w+|[*fpms])"
 
-    def ordered(words, width):
-        triples = [words] if width > 0 else [words[:3], words[3:]]
-        return " ".join(" ".join(some[a * abs(width):(a + 1) * abs(width)] if width > 0
-                                 else some[a:a + 1])
-                        for some in triples for a in axes)
+    def along(words, each):
+        return " ".join(word for first in range(0, len(words), 3 * each) for a in axes
+                        for word in words[first + a * each:first + (a + 1) * each])
 
-    for head, width in VECTORS.items():
-        text = re.sub(rf"(?<!\S)({head})((?: {number}){{{3 * abs(width)}}})(?!\S)",
-                      lambda m, w=width: f"{m[1]} {ordered(m[2].split(), w)}", text)
+    for head, (count, each) in VECTORS.items():
+        text = re.sub(rf"(?<!\S)({head})((?: {number}){{{3 * each * count}}})(?!\S)",
+                      lambda m, n=each: f"{m[1]} {along(m[2].split(), n)}", text)
     text = re.sub(r"\b([xyz])(lo|hi)\b", lambda m: new[m[1]] + m[2], text)
-    if axes == (1, 0, 2):    # a reflection: what turns does so the other way
-        text = text.replace("variable lean equal ", "variable lean equal 0-")
     return re.sub(r"(?<= )[xyz](?= delta)|(?<=range )[xyz]|(?<=along )[xyz]",
                   lambda m: new[m[0]], text)
 
@@ -445,7 +442,8 @@ region refill block [-0.042 -0.023] 0.023 0.047 INF INF units box
         half = self.setting("own", 1.0) * DX / 2
         (a, b), (c, d), (e, f) = np.stack([x.min(0) - half, x.max(0) + half], 1).tolist()
         z = f"{e!r} {f!r}" if self.dim == 3 else "INF INF"
-        turn = self.setting("turn", 0)
+        # about the third axis; a reflection turns the other way
+        turn = self.setting("turn", 0) * (-1 if self.axes == (1, 0, 2) else 1)
         about = f"rotate v_lean <{3 * DX!r}> {self.low * DX!r} 0 0 0 1" if turn else ""
         return [f"variable lean equal <{turn}>",
                 f"region hull block [{a!r} {b!r}] {c!r} {d!r} {z} {about} units box",

@@ -6,7 +6,11 @@ import re
 
 import numpy as np
 import pytest
+from decks import WALL, WATER
+from decks import deck as deck_of
 from scenes import lammps
+
+from fsi import dump
 
 DX, R = 0.01, 0.055
 DECK = """units si
@@ -216,35 +220,16 @@ def test_half_before_a_plane(tmp_path, low, of, ends):
 def test_vessel(tmp_path):
     """Water rests in a round vessel whose wall is packed with it. Each row of water is a step of 5
     % in the pressure at the bottom."""
-    text = """units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.25 0.25 -0.25 0.25 -0.005 0.005 units box
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-create_atoms 2 box
-region low block -0.23 0.23 -0.23 0 INF INF units box
-create_atoms 1 region low
-group water type 1
-group wall type 2
-fsi/material water fluid rho 1000
-fsi/material wall wall rho 1000
-pair_style fsi/fluid preset splash 2
-pair_coeff * * NULL water wall
-fix 1 water fsi 0.01
-fix 2 all gravity 9.81 vector 0 -1 0
-fix 3 wall fsi/wall/particle
-region vessel cylinder z 0 0 0.2 INF INF side out units box
-fsi/pack wall water region vessel
-fsi/set water hydrostatic 0
-compute p all fsi/atom p
-fsi/run 1.5
-write_dump water custom end.dump id type c_p x y z modify sort id
-"""
-    lammps(tmp_path, text)
-    lines = (tmp_path / "end.dump").read_text().splitlines()
-    _, _, p, x, y, _ = np.array([line.split() for line in lines[9:]], float).T
+    lammps(tmp_path, deck_of(
+        "-0.25 0.25 -0.25 0.25", DX, {"water": WATER, "wall": WALL},
+        "fix g all gravity 9.81 vector 0 -1 0", "fix wall wall fsi/wall/particle",
+        "region vessel cylinder z 0 0 0.2 INF INF side out units box",
+        "fsi/pack wall water region vessel", "fsi/set water hydrostatic 0",
+        "compute p all fsi/atom p", "fsi/run 1.5",
+        "write_dump water custom end.dump id x y c_p modify sort id time yes",
+        fluid="preset splash 2", group="water", water="-0.23 0.23 -0.23 0", wall=""))
+    end = dump.read(tmp_path / "end.dump")[-1]
+    x, y, p = end["x"], end["y"], end["c_p"]
     top = y.max() + 0.005
     assert len(x) == pytest.approx(math.pi * 20**2 / 2, abs=3)    # in cells
     assert np.hypot(x, y).max() < 0.2 and abs(top) < 0.004

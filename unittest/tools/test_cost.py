@@ -130,6 +130,14 @@ def test_plate_unstable_run_is_a_point_too(plate):
     assert "1 stopped or do not count" in (folder / "page.md").read_text()
 
 
+@pytest.mark.parametrize("sizes, thinnest", [((4, 4, 5), {"2": 4.0, "3": 5.0}),
+                                             ((4, 8, 5), {})])
+def test_thickness_is_that_of_all_methods(sizes, thinnest):
+    rows = [{"role": "curve", "x": x, "point": {"bodies": [("body 1", 0, [n, 20])]}}
+            for x, n in zip((2, 2, 3), sizes)]
+    assert cost_report._thinnest(rows) == thinnest    # pylint: disable=protected-access
+
+
 def test_plate_leaves_picture_and_page(plate):
     folder, summary, rows, _, _ = plate
     assert (folder / "work.png").read_bytes().startswith(b"\x89PNG")
