@@ -34,7 +34,6 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_refusals.h"
-#include "fsi_sight.h"
 #include "group.h"
 #include "neighbor.h"
 #include "output.h"
@@ -113,8 +112,6 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   disc.resolve();
   choose_skin(lmp, disc.dx);
-  if (std::count(disc.thin.begin(), disc.thin.end(), 1.0))
-    disc.sight = std::make_shared<Sight>(lmp, disc, step.walls, disc.thin);
 
   nevery = time_integrate = force_reneighbor = create_attribute = pre_exchange_migrate = 1;
   set_fields();
@@ -262,8 +259,7 @@ void FixFSI::setup(int)
 
 void FixFSI::find_parts()
 {
-  auto &parts = members->parts;
-  parts = pairs_of<Part>(lmp);
+  auto parts = pairs_of<Part>(lmp);
   std::sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->facts().style < b->facts().style;
   });
@@ -273,6 +269,8 @@ void FixFSI::find_parts()
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
   });
+  // a step goes through them when an end asks for a compute, which asks for this
+  if (members->parts != parts) members->parts = parts;
 }
 
 // A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must

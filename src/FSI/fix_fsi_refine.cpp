@@ -65,11 +65,12 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
   static const std::vector<std::string> keys = {"types", "finest", "region", "distance", "settle"};
   for (int k = 4; k < narg;) {
     const std::string key = arg[k++];
+    const bool one = key == "settle" || key == "finest";
     std::vector<std::string> values;
-    while (k < narg && std::find(keys.begin(), keys.end(), arg[k]) == keys.end())
+    while (k < narg && !(one && values.size()) &&
+           std::find(keys.begin(), keys.end(), arg[k]) == keys.end())
       values.emplace_back(arg[k++]);
-    if ((key == "settle" || key == "finest") && values.size() != 1)
-      utils::missing_cmd_args(FLERR, "fix fsi/refine " + key, error);
+    if (one && values.empty()) utils::missing_cmd_args(FLERR, "fix fsi/refine " + key, error);
     if (key == "types")
       read_types(values);
     else if (key == "region")
@@ -576,23 +577,6 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   return list;
 }
 
-// Has a segment of a mirror wall one on each side? The one before it sees the other where it would
-// see the image of one on its own side.
-static bool are_apart(const Walls &walls, const double *x, const double *y)
-{
-  for (int k = 0; k < (int) walls.wall.size(); k++) {
-    const Wall &wall = walls.wall[k];
-    const double a = wall.distance(x), b = wall.distance(y);
-    if (!wall.finite || a * b > 0.0 || a == b) continue;
-    const Walls::Reflection reflection = {1 << k, 1, {k}};
-    const double *const from = a > b ? x : y;
-    double original[3], away[3], rsq = 0.0;
-    Mirror(walls, reflection).reflect(a > b ? y : x, original);
-    if (walls.sees(reflection, from, original, HUGE_VAL, rsq, away)) return true;
-  }
-  return false;
-}
-
 // Merging: pairs of which each is the other's best partner, by distance, then by a hash of both
 // IDs, which knows no direction; then those that are left. Whole numbers, the same on all ranks.
 void FixFSIRefine::choose_partners()
@@ -625,13 +609,11 @@ int FixFSIRefine::best_partner(int i, const Cells &cells) const
 {
   const tagint *const tag = atom->tag;
   const double per_dx = 1.0 / disc->dx_of(atom->type[i]), cut = disc->resolution[atom->type[i]].cut;
-  const bool segments = step->walls.finite();
   const Sight *const sight = sight_from(i);
   std::pair<int, uint64_t> best;
   int found = -1;
   cells.around(atom->x[i], [&](int j, double rsq) {
     if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
-    if (segments && are_apart(step->walls, atom->x[i], atom->x[j])) return;
     const bool eager = (carried[i] | carried[j]) & EAGER;
     const double q = std::sqrt(rsq) * per_dx;
     if (q >= (eager ? FAR_REACH : REACH)) return;

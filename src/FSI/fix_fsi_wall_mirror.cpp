@@ -25,6 +25,7 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_walls.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -57,7 +58,8 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   extscalar = extarray = 1;
   global_freq = 1;
   restart_global = 1;
-  nevery = 1;
+  nevery = force_reneighbor = 1;
+  next_reneighbor = -1;
 }
 
 // one keyword at a time, and the values that follow it
@@ -234,7 +236,14 @@ void FixFSIWallMirror::post_integrate()
   auto *const x = vectors(atom->x), *const v = vectors(atom->v);
   const double dth = 0.5 * update->dt, near = guard * disc->dx;
 
-  for (auto &w : walls) w.position += dth * w.velocity[w.axis];
+  double fastest = 0.0;
+  for (auto &w : walls) {
+    w.position += dth * w.velocity[w.axis];
+    if (w.finite) fastest = std::max(fastest, std::fabs(w.velocity[w.axis]));
+  }
+  // before one passes through pairs that were not listed as those that it may divide
+  if (fastest * update->dt * (neighbor->ago + 2) > 0.5 * neighbor->skin)
+    next_reneighbor = update->ntimestep;
   turns.clear();
 
   for (const int i : find_outside(InnerBox(walls, near))) {
@@ -271,6 +280,15 @@ void FixFSIWallMirror::end_of_step()
       for (int d = 0; d < 3; d++)
         ledger->energy_out[Ledger::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }
+}
+
+Facts FixFSIWallMirror::facts() const
+{
+  Facts facts = only(&Facts::mirror_walls);
+  facts.segments = std::any_of(walls.begin(), walls.end(), [](const Wall &w) {
+    return w.finite;
+  });
+  return facts;
 }
 
 void FixFSIWallMirror::add_walls(Walls &all, std::vector<WallForce> &forces)

@@ -48,7 +48,7 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
 
   std::vector<FSI::Wall> walls;
   std::vector<std::array<double, 3>> force_on;    // on each wall, this rank's part
-  FSI::Facts facts() const override { return FSI::only(&FSI::Facts::mirror_walls); }
+  FSI::Facts facts() const override;
   void add_walls(FSI::Walls &, std::vector<FSI::WallForce> &) override;
   void begin_state(bool) override;
   void go_back() override;

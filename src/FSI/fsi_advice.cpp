@@ -605,7 +605,8 @@ static tagint first_that_sees_through(const Census &c, int type, const Cells &fl
       const double cut =
           0.5 * (c.disc.resolution[atom->type[i]].cut + c.disc.resolution[atom->type[j]].cut);
       if (j != i && atom->tag[i] < least && rsq < PART * cut * PART * cut &&
-          sight.may_hide(atom->x[j], 0.0) && sight.visible(atom->x[j], cut) < HIDDEN)
+          !c.walls.row().divide(atom->x[i], atom->x[j]) && sight.may_hide(atom->x[j], 0.0) &&
+          sight.visible(atom->x[j], cut) < HIDDEN)
         least = atom->tag[i];
     });
   }

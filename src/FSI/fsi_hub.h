@@ -22,6 +22,7 @@
 #include "fsi_material.h"
 #include "fsi_walls.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -103,8 +104,11 @@ namespace FSI {
     void enter_state(int type, const State &);
     bool several_stiffnesses() const;    // do fluids differ in rho0 c^2?
     std::vector<int> types_of_levels;    // the first fluid, and those left to fix fsi/refine
-    std::vector<double> thin;        // per atom type, 1: fluids do not see each other through it
-    std::shared_ptr<Sight> sight;    // past those; null: there are none
+    std::vector<double> thin;    // per atom type, 1: fluids do not see each other through it
+    std::shared_ptr<Sight>
+        sight;    // past those and segments of mirror walls; null: there are none
+    bool has_thin() const { return std::count(thin.begin(), thin.end(), 1.0) > 0; }
+    void find_sight(LAMMPS *, const Walls &, bool segments);
     bool noslip_walls = false;
     double mach;    // largest Mach number of fluids
 

@@ -351,6 +351,20 @@ class Packing : protected Pointers {
           residue[1]);
   }
 
+  void refuse_in_two() const
+  {
+    const auto twice = find_particles(atom, world, [&](int i) {
+      const int mask = atom->mask[i];
+      return !!(mask & body) + !!(mask & fluid) + !!(mask & still) > 1;
+    });
+    if (twice.count)
+      error->all(
+          FLERR,
+          "Fsi/pack: {} particles, the first of them atom {}, are in two of the groups body, "
+          "fluid and still: expected groups that have none in common",
+          twice.count, twice.first);
+  }
+
   // packing would strain them
   void refuse_bonded() const
   {
@@ -400,6 +414,7 @@ class Packing : protected Pointers {
     step = &fix->step;
     ledger = &fix->ledger;
     lmp->init();
+    refuse_in_two();
     refuse_bonded();
     double finest = INFINITY;    // where levels meet only their events move what is there
     for (int i = 0; i < atom->nlocal; i++)

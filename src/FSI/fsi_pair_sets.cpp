@@ -302,7 +302,8 @@ void PairSets::find_rows(const NeighList *list)
       rows_of[ntypes * a + b] = &sets[of_two_levels[nlevels * level[a] + level[b]]].rows;
 
   std::vector<int> unmasked;
-  const bool single = atom->ntypes == 1 && fluid_types.size() == 1 && !atom->molecular;
+  const bool single =
+      atom->ntypes == 1 && fluid_types.size() == 1 && !atom->molecular && !disc->sight;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i], n = list->numneigh[i];
     if (single && is_fluid[type[i]]) {

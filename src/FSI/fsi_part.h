@@ -59,7 +59,7 @@ namespace FSI {
     double alpha = 0.0;    // artificial viscosity
     // of fixes: what chooses the time step, sub-steps; walls; what keeps strain or stress
     bool chooses_step = false, chooses_substeps = false;
-    bool mirror_walls = false, particle_walls = false;
+    bool mirror_walls = false, segments = false, particle_walls = false;
     bool keeps_solids = false;
     // of computes
     bool keeps_account = false;    // of energy

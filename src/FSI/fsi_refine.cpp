@@ -359,7 +359,7 @@ template <class K> void Settling::sum_up(const std::vector<K> &of_types)
   });
 }
 
-// they hide some of what is behind them
+// They hide some of what is behind them, images and particles themselves
 template <class K> void Settling::add_images_of_segments(const std::vector<K> &of_types)
 {
   const Walls &walls = step.walls;
@@ -371,14 +371,19 @@ template <class K> void Settling::add_images_of_segments(const std::vector<K> &o
     for (int n = 0; n < rows[r].n; n++) {
       const int j = rows[r].j[n];
       const K &kernel = of_types[type[i] * (atom->ntypes + 1) + type[j]];
-      walls.images(near & walls.near(x[j], disc.cut), MathExtra::distsq3(x[i], x[j]), x[i], x[j],
-                   kernel.cutsq, [&](const Walls::Reflection &s, double rsq, const double *away) {
-                     if (!walls.finite(s)) return;
-                     const double distance = std::sqrt(rsq), volume = points[POINT * j + 3],
-                                  g = volume * kernel.gradient(distance);
-                     for (int a = 0; a < K::DIM; a++) sum_i[a] += g * away[a];
-                     sum_i[K::DIM] += volume * kernel.W(distance);
+      const auto add = [&](double rsq, const double *away, double volume) {
+        const double distance = std::sqrt(rsq), g = volume * kernel.gradient(distance);
+        for (int a = 0; a < K::DIM; a++) sum_i[a] += g * away[a];
+        sum_i[K::DIM] += volume * kernel.W(distance);
+      };
+      const double volume = points[POINT * j + 3], rsq0 = MathExtra::distsq3(x[i], x[j]);
+      walls.images(near & walls.near(x[j], disc.cut), rsq0, x[i], x[j], kernel.cutsq,
+                   [&](const Walls::Reflection &s, double rsq, const double *away) {
+                     if (walls.finite(s)) add(rsq, away, volume);
                    });
+      if (rsq0 >= kernel.cutsq || !walls.row().divide(x[i], x[j])) continue;
+      const double away[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
+      add(rsq0, away, -volume);
     }
   }
 }

@@ -141,7 +141,10 @@ template <class Visit> void Sight::for_near(const double *x, Visit visit) const
 
 bool Sight::near(const double *x) const
 {
-  bool any = false;
+  const double reach = disc.cut + neighbor->skin;
+  bool any = std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &w) {
+    return w.finite && std::fabs(w.distance(x)) < reach && w.spans(x, reach);
+  });
   for_near(x, [&](const Place &p) {
     return any = any || p.thin;
   });
@@ -205,6 +208,7 @@ double Sight::way_to(const double *y, double (&d)[3]) const
 
 bool Sight::may_hide(const double *y, double slack) const
 {
+  if (walls.row().may_divide(from, y, slack)) return true;
   double d[3];
   const double length = std::sqrt(way_to(y, d));
   for (double &e : d) e /= length;
@@ -229,7 +233,8 @@ static double smooth(double x)
 double Sight::visible(const double *y, double cut) const
 {
   double d[3];
-  return way_to(y, d) < FAR * cut * cut ? left_of(y, cut) : 1.0;
+  if (way_to(y, d) >= FAR * cut * cut) return 1.0;
+  return walls.row().divide(from, y) ? 0.0 : left_of(y, cut);
 }
 
 double Sight::left_of(const double *y, double cut) const

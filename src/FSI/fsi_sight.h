@@ -14,7 +14,8 @@
 // What fluids see past bodies and walls that are thinner than the kernel's support (fix fsi thin):
 // of a pair of fluid particles that such a body is between only a part is left, none of it where
 // the body goes on to all sides, all of it at a free edge; and to each side the body counts as if
-// it went on behind. A function of where particles are in a step (theory.rst).
+// it went on behind. Nothing is left of a pair that a segment of a mirror wall divides. A function
+// of where particles are in a step (theory.rst).
 
 #ifndef LMP_FSI_SIGHT_H
 #define LMP_FSI_SIGHT_H
@@ -43,7 +44,7 @@ namespace FSI {
     void find_bodies();      // when neighbor lists are new
     void follow_bodies();    // to where they are; what follows is said of then
 
-    // may a thin one come within the support before lists are built again?
+    // may a thin one, or a segment, come within the support before lists are built again?
     bool near(const double *x) const;
     // x: for the next four; reach: the largest support that they ask for, at most that of the
     // coarsest fluid; slack: look so much farther, by the skin at most

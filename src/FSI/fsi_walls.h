@@ -125,6 +125,30 @@ namespace FSI {
       return rsq < cutsq && passes(s, xi, dx, ai, aj);
     }
 
+    // Has a segment x and y on different sides, and the straight line between them through it?
+    FSI_INLINE bool divide(const double *x, const double *y) const
+    {
+      for (int k = 0; k < n; k++) {
+        const double a = wall[k].distance(x), b = wall[k].distance(y);
+        if (!wall[k].finite || a * b >= 0.0) continue;
+        const double t = a / (a - b);
+        const double cross[3] = {x[0] + t * (y[0] - x[0]), x[1] + t * (y[1] - x[1]),
+                                 x[2] + t * (y[2] - x[2])};
+        if (wall[k].spans(cross, 0.0)) return true;
+      }
+      return false;
+    }
+
+    // may one come between them if each changes its distance to it by slack?
+    bool may_divide(const double *x, const double *y, double slack) const
+    {
+      for (int k = 0; k < n; k++) {
+        const double a = wall[k].distance(x), b = wall[k].distance(y);
+        if (wall[k].finite && std::fmin(a, b) < slack && std::fmax(a, b) > -slack) return true;
+      }
+      return false;
+    }
+
     // of a reflection the wall that has the force along that axis
     FSI_INLINE int pushed(const Reflection &s, int axis) const
     {

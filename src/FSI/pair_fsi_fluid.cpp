@@ -269,7 +269,9 @@ void PairFSIFluid::init_style()
                "Fix fsi without a kernel takes the one of preset {}: expected the pair style "
                "before the fix, or the kernel named there",
                PRESETS[preset - 1].name);
-  FixFSI::find(lmp, style)->disc.find_levels();
+  FixFSI *const fix = FixFSI::find(lmp, style);
+  fix->disc.find_levels();
+  fix->disc.find_sight(lmp, fix->step.walls, any_is(fixes_of<Part>(lmp), &Facts::segments));
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.emplace(lmp, *disc, has_solids());
   members->light_solids.emplace(lmp, *disc, *step, *ledger, *ghosts,
@@ -960,7 +962,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
                   "couple", has_solids()});
   if (shifting > 0.0 && shift_every > 1)
     list.push_back({fmt::format("shifted every {} steps", shift_every), "shift/every", true});
-  if (disc && disc->sight)
+  if (disc && disc->has_thin())
     list.push_back(
         {"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});

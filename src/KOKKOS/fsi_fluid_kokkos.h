@@ -116,10 +116,14 @@ namespace FSI {
     AT::t_neighbors_2d neighbors;
     ImageArrays images;
 
-    // calls pair(j)
-    template <class Pair> KOKKOS_FORCEINLINE_FUNCTION void for_pairs(int i, Pair pair) const
+    // calls pair(j) for those that no segment divides from i
+    template <int D, class Pair>
+    KOKKOS_FORCEINLINE_FUNCTION void for_pairs(int i, const Point<D> *point, Pair pair) const
     {
-      for (int jj = 0, n = numneigh(i); jj < n; jj++) pair(neighbors(i, jj) & NEIGHMASK);
+      for (int jj = 0, n = numneigh(i); jj < n; jj++) {
+        const int j = neighbors(i, jj) & NEIGHMASK;
+        if (!images.finite || !divided(point[i], point[j])) pair(j);
+      }
     }
     // calls pair(j, mirror, number of the reflection) for the images that i sees, also its own
     template <int D, class Pair>
@@ -139,6 +143,13 @@ namespace FSI {
     }
 
    private:
+    template <int D>
+    KOKKOS_FORCEINLINE_FUNCTION bool divided(const Point<D> &i, const Point<D> &j) const
+    {
+      const double xi[3] = {i.x[0], i.x[1], D == 3 ? i.x[D - 1] : 0.0},
+                   xj[3] = {j.x[0], j.x[1], D == 3 ? j.x[D - 1] : 0.0};
+      return images.walls.divide(xi, xj);
+    }
     template <int D>
     KOKKOS_FORCEINLINE_FUNCTION bool sees(const Reflection &s, const Point<D> &i,
                                           const Point<D> &j) const
@@ -191,7 +202,7 @@ namespace FSI {
       const Point<D> *const point = this->points();
       const Particle<double, D> pi(point[i]);
       double sum = 0.0, flux = 0.0, by = 0.0;
-      this->for_pairs(i, [&](int j) {
+      this->for_pairs(i, point, [&](int j) {
         add<FLAGS>(i, pi, j, Particle<double, D>(point[j]), sum, flux, by);
       });
       this->for_images(i, point, [&](int j, const Mirror &mirror, int) {
@@ -247,7 +258,7 @@ namespace FSI {
       double force[D], rubbing[D];
       for (int d = 0; d < D; d++) force[d] = rubbing[d] = 0.0;
       Powers<double> by;
-      this->for_pairs(i, [&](int j) {
+      this->for_pairs(i, point, [&](int j) {
         double of_pair[D];
         if (!find<FLAGS>(artificial, viscous, i, pi, j, point[j], Mirror(), nullptr, of_pair,
                          SUMS ? rubbing : nullptr, by))

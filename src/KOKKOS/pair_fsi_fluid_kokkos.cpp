@@ -65,7 +65,7 @@ void PairFSIFluidKokkos::refuse_others() const
       {disc->density_fluid != Discretization::CONTINUITY, "fix fsi fluid summation"},
       {disc->article != 0, "fix fsi scheme article"},
       {disc->has_levels(), "fluids of several spacings"},
-      {disc->sight != nullptr, "fix fsi thin"},
+      {disc->has_thin(), "fix fsi thin"},
       {shifting > 0.0, "keyword shift"},
       {surfaces != 0, "keyword density/surface"},
       {surface_ratio > 0.0, "keyword surface"},

@@ -393,6 +393,11 @@ def test_body_without_lattice(tmp_path):
     assert done.status != 0 and "expected one that goes on beyond the surface" in done.errors[0]
 
 
+def test_groups_in_common(tmp_path):
+    done = lammps(tmp_path, deck("region s", region=DISC, fluid="all"))
+    assert done.status != 0 and "are in two of the groups body, fluid and still" in done.errors[0]
+
+
 @pytest.mark.parametrize("before, refused", [("", False), ("run 0\n", True)])
 def test_body_with_bonds(tmp_path, before, refused):
     """An elastic body is packed before it is bonded, or it would begin with strain."""

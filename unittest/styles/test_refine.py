@@ -834,6 +834,7 @@ BAD = {
     "10 types 1 2 zone one": r"has 2 types|integer|Fix fsi/refine types zone",
     "10 types 1 2 region one settle -1": r"Fix fsi/refine settle -1 must be",
     "10 types 1 2 region one settle": r"Illegal fix fsi/refine settle command: missing argument",
+    "10 types 1 2 region one settle 10 20": r"Unknown fix fsi/refine keyword 20: expected types",
     "10 types 1 2 region one distance all 0.1": r"takes region or distance, not both",
     "10 types 1 2 distance nobody 0.1": r"Group nobody of fix fsi/refine distance does not exist",
     "10 types 1 2 distance some 0.1\nrun 0\ngroup some delete": r"Group some of fix fsi/refine "

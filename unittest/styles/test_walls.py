@@ -62,6 +62,11 @@ def ray_reaches(x, target, walls):
         left.pop(k)
     return True
 
+def divided(x, y, walls):
+    """Is a segment between these two? They and their images in other walls do not count then."""
+    return any(w.extent and w.distance(x) * w.distance(y) < 0 and w.holds(
+        x + w.distance(x) / (w.distance(x) - w.distance(y)) * (y - x)) for w in walls)
+
 def with_images(x, v, walls):
     """x_i - x_j, v_ij, v_ij of viscous forces, j, i, for all pairs within reach with neighbors and
     their images"""
@@ -76,6 +81,8 @@ def with_images(x, v, walls):
         for i, j in zip(*np.nonzero(before & np.reshape(before, (-1, 1))
                                     & (((x[:, None] - y)**2).sum(2) < REACH**2))):
             if not s and i == j:
+                continue
+            if divided(x[i], x[j], walls):
                 continue
             if any(w.extent for w in s) and not ray_reaches(x[i], y[j], s):
                 continue
@@ -114,6 +121,10 @@ PLACES = {
     "two segments": (2,
                      [Wall("xlo", extent={1: (0.03, 0.4)}), Wall("ylo", extent={0: (-INF, 0.35)})]),
     "inside": (2, [Wall("xhi", 0.32, extent={1: (0.3, INF)})]),
+    "both sides": (2, [Wall("xhi", 0.32, extent={1: (0.3, INF)}),
+                       Wall("xlo", 0.32, extent={1: (0.3, INF)}), Wall("ylo")]),
+    "both sides 3D": (3, [Wall("xhi", 0.22, extent={1: (-INF, 0.25), 2: (0.1, INF)}),
+                          Wall("xlo", 0.22, extent={1: (-INF, 0.25), 2: (0.1, INF)})]),
     "floor 3D": (3, [Wall("zlo")]),
     "edge 3D": (3, [Wall("zlo"), Wall("yhi", 0.45)]),
     "corner 3D": (3, [Wall("xlo"), Wall("ylo"), Wall("zlo")]),
@@ -158,9 +169,9 @@ def test_forces(place, slip, artificial, viscosity, central):
         close(s.get("f"), force, 1e-12)
         close(s.fix_array("walls", len(walls)).sum(0), on_walls, 1e-12)
 
-# not "inside": what stands within a spacing behind a segment counts as come through it, and is
-# reflected
-@pytest.mark.parametrize("place", [p for p in PLACES if p != "inside"])
+# not inside the fluid: what stands within a spacing behind a segment counts as come through it, and
+# is reflected
+@pytest.mark.parametrize("place", [p for p in PLACES if not p.startswith(("inside", "both"))])
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_density_rates(place, kernel):
     """One step: rho += dt sum m v_ij.g_ij with images at the start of the step; walls may move and
@@ -298,6 +309,44 @@ def test_segment_catches_what_comes_through(dim):
         close(s.get("x")[:, 1],
               np.where(bounced, 0.02 - middle + 1.5 * dt * speed, middle - 1.5 * dt * speed), 1e-9)
         assert s.fix_scalar("walls") == bounced.sum()
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_water_on_both_sides_of_a_segment(tmp_path, ranks):
+    """Still water of two depths beside a gate: each stays, and each has its own weight on it."""
+    scene = run(tmp_path, """
+units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block -0.1 0.6 -0.1 0.6 -0.005 0.005
+create_box 1 box
+lattice sq 0.01 origin 0.5 0.5 0
+region deep block 0 0.25 0 0.3 INF INF units box
+region low block 0.25 0.5 0 0.1 INF INF units box
+create_atoms 1 region deep
+create_atoms 1 region low
+fsi/material water fluid rho 1000
+pair_style fsi/fluid sound 25 density/diffusion 0.1
+pair_coeff * * NULL water
+fix 1 all fsi 0.01
+fix 2 all gravity 9.81 vector 0 -1 0
+fix 3 all fsi/wall/mirror xlo 0 xhi 0.5 ylo 0
+fix gate all fsi/wall/mirror xhi 0.25 range y INF 0.4 xlo 0.25 range y INF 0.4
+variable p atom 9810*((x<0.25)*(0.3-y)+(x>0.25)*(0.1-y))
+fsi/set all pressure v_p
+compute fast all reduce max vx
+thermo_style custom step f_gate[1][1] f_gate[2][1] c_fast
+timestep 2e-4
+run 500
+print "LOADS $(f_gate[1][1]) $(f_gate[2][1]) $(c_fast)"
+""", ranks)
+    loads = next(line for line in scene.output.splitlines() if line.startswith("LOADS"))
+    deep, low, fastest = map(float, loads.split()[1:])
+    # rho g depth^2/2, of which the pressure within the support of the surface misses 1 and 3 %
+    assert deep == pytest.approx(0.5 * 9810 * 0.3**2, rel=0.02)
+    assert low == pytest.approx(-0.5 * 9810 * 0.1**2, rel=0.04)
+    assert abs(fastest) < 0.01
 
 
 def test_wall_that_comes_after_a_run():
