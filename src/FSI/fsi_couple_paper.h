@@ -22,29 +22,27 @@
 #include "fsi_tensor.h"
 #include "fsi_walls.h"
 
-namespace LAMMPS_NS {
-namespace FSI {
+namespace LAMMPS_NS::FSI {
 
-  namespace CouplePaper {
-    // adds the stress of solid j to the force on fluid i and gives its power; it is that of the
-    // particle, not of its image, so look from the solid
-    template <bool IMAGE, int D>
-    FSI_INLINE double add_stress(const double *stress, const Mirror &mirror, double v2g,
-                                 const double (&x)[D], const double (&v)[D], double (&force)[D])
-    {
-      double seen[D], shear[D] = {}, power = 0.0;
-      for (int d = 0; d < D; d++) seen[d] = (IMAGE ? mirror.sign[d] : 1.0) * x[d];
-      dot<D>(Sym<D>::load(stress), seen, shear);
-      for (int d = 0; d < D; d++) {
-        const double s = (IMAGE ? mirror.sign[d] : 1.0) * shear[d] * v2g;
-        force[d] += s;
-        power += s * v[d];
-      }
-      return power;
+namespace CouplePaper {
+  // adds the stress of solid j to the force on fluid i and gives its power; it is that of the
+  // particle, not of its image, so look from the solid
+  template <bool IMAGE, int D>
+  FSI_INLINE double add_stress(const double *stress, const Mirror &mirror, double v2g,
+                               const double (&x)[D], const double (&v)[D], double (&force)[D])
+  {
+    double seen[D], shear[D] = {}, power = 0.0;
+    for (int d = 0; d < D; d++) seen[d] = (IMAGE ? mirror.sign[d] : 1.0) * x[d];
+    dot<D>(Sym<D>::load(stress), seen, shear);
+    for (int d = 0; d < D; d++) {
+      const double s = (IMAGE ? mirror.sign[d] : 1.0) * shear[d] * v2g;
+      force[d] += s;
+      power += s * v[d];
     }
-  }    // namespace CouplePaper
+    return power;
+  }
+}    // namespace CouplePaper
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::FSI
 
 #endif
