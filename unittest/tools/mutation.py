@@ -60,7 +60,7 @@ TESTS = {
     "fix_fsi_refine.cpp": "refine", "fsi_refine.h": "refine", "fix_fsi_spectrum.cpp": "spectrum",
     "fix_fsi_watch.cpp": "watch", "fix_fsi_report.cpp": "report",
     "fsi_check.cpp": "stop", "fsi_pack_command.cpp": "packing",
-    "fsi_surface.cpp": "packing", "fsi_commands.cpp": "displace density materials clamp_command",
+    "fsi_commands.cpp": "displace density materials clamp_command",
     "compute_fsi_energy.cpp": "energy solid_tl", "compute_fsi_force.cpp": "force",
     "compute_fsi_probe.cpp": "probe", "compute_fsi_surface_atom.cpp": "surface",
     "compute_fsi_atom.cpp": "density solid",
