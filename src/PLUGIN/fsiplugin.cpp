@@ -22,7 +22,6 @@
 #include "compute_fsi_energy.h"
 #include "compute_fsi_force.h"
 #include "compute_fsi_probe.h"
-#include "compute_fsi_surface_atom.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
 #include "fix_fsi_history.h"
