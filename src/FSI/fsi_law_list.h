@@ -19,7 +19,7 @@
 //   BY_RATE         its stress is that of fix fsi/stress, which velocity gradients change; else its
 //                   energy is a function of the deformation gradient and of its history
 //   HISTORY         what its history is called, empty: none. It has columns(dim) numbers of each
-//                   particle, which begin with 0 (fix_fsi_history.h), and takes a step with
+//                   particle, which begin with 0 (fix_fsi_stress.h), and takes a step with
 //                   factors(dt), found once, and advance<D>(F, factors, history) of each particle,
 //                   which returns the dissipated energy per reference volume.
 

@@ -18,7 +18,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_history.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"

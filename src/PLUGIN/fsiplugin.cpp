@@ -24,7 +24,6 @@
 #include "compute_fsi_probe.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
-#include "fix_fsi_history.h"
 #include "fix_fsi_inlet.h"
 #include "fix_fsi_move.h"
 #include "fix_fsi_reference.h"
