@@ -17,7 +17,6 @@
 #ifndef LMP_FSI_FLUID_TERMS_H
 #define LMP_FSI_FLUID_TERMS_H
 
-#include "fsi_couple_paper.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
 #include "fsi_pair_laws.h"
@@ -652,6 +651,25 @@ FSI_INLINE void slow(const LaminarViscosity<D> &viscous, const ForceLaws &laws,
     by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * m.share * loss : m.share * loss;
 }
 
+// Of couple full, by which the source paper lets a fluid and a solid share one equation of motion
+// (eq. 14): the mean of both pressures, and the solid's stress; kept to compare with. Adds the
+// stress of solid j to the force on fluid i and gives its power; it is that of the particle, not of
+// its image, so look from the solid
+template <bool IMAGE, int D>
+FSI_INLINE double add_stress(const double *stress, const Mirror &mirror, double v2g,
+                             const double (&x)[D], const double (&v)[D], double (&force)[D])
+{
+  double seen[D], shear[D] = {}, power = 0.0;
+  for (int d = 0; d < D; d++) seen[d] = (IMAGE ? mirror.sign[d] : 1.0) * x[d];
+  dot<D>(Sym<D>::load(stress), seen, shear);
+  for (int d = 0; d < D; d++) {
+    const double s = (IMAGE ? mirror.sign[d] : 1.0) * shear[d] * v2g;
+    force[d] += s;
+    power += s * v[d];
+  }
+  return power;
+}
+
 // What keeps fluid and bodies apart beyond pressure: the guard, and of couple full the stress of
 // the solid
 template <class T, int KIND, int FLAGS, int D>
@@ -663,8 +681,8 @@ FSI_INLINE void hold_off(const FluidParticles &in, const ForceLaws &laws, const 
     keep_out<T, KIND, FLAGS>(laws.guard[type_j], in, bulk, j, m, force, by);
   if constexpr (KIND == WITH_SOLID_FULL)
     if (laws.stress)
-      coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(
-          laws.stress[*j], mirror, vol_j * vol_j * m.g, m.x, m.v, force);
+      coupled -= add_stress<(FLAGS & Flag::IMAGES) != 0>(laws.stress[*j], mirror,
+                                                         vol_j * vol_j * m.g, m.x, m.v, force);
 }
 
 // The force on j: the reaction, of an image turned as the wall turns it; laminar viscosity, which
