@@ -12,16 +12,73 @@
 ------------------------------------------------------------------------- */
 
 // What no run may lose: numbers that are finite, densities above 0, fluids slower than their sound.
-// Fix fsi asks in every step before the kick, the last moment with a state to go back to.
+// Fix fsi asks in every step before the kick, the last moment with a state to go back to. And how a
+// run that has lost them is stopped (fsi_stop.cpp), by fix fsi/watch, too.
 
 #ifndef LMP_FSI_CHECK_H
 #define LMP_FSI_CHECK_H
 
-#include "fsi_stop.h"
+#include "fsi_part.h"
+#include "pointers.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS::FSI {
+
+// what can be wrong
+enum Trouble { FINITE, MACH, DISTANCE, DENSITY, ENERGY, LOST, NTROUBLE };
+constexpr double HUGE_SQUARE = 1.0e200;    // of a speed: nothing finite gets there
+
+// with whom
+struct Finding {
+  double value, x[3];
+  tagint tag, other;    // 0 = no particle
+  int type;
+  Trouble trouble;
+  int field;    // of FINITE: Stop::Field
+};
+
+// How a run that goes wrong is stopped: particle, place, value, what to try; files of the state
+class Stop : protected Pointers {
+ public:
+  enum Field { FORCE, VELOCITY, MASS_DENSITY, POSITION, MASS };
+  // before all forces; in a step: where positions are, and for MIDDLE densities, too
+  enum When { BEFORE, START, DRIFTED, MIDDLE };
+
+  Stop(class LAMMPS *, const std::string &name, const Discretization &, const StepState &,
+       const std::vector<Part *> &);
+  Finding finding(Trouble, int i, double value, int j = -1) const;
+  // what of atom i is not finite? No tag if nothing is. With forces, if they are there
+  Finding not_finite(int i, bool forces) const;
+  // of the findings of all ranks the one with the largest key
+  Finding worst(const Finding &of_rank, double key) const;
+  // what is wrong, if it is not FINITE, then step, particle and what to try
+  std::string describe(const std::string &what, const Finding &, When) const;
+  // error->all, after writing the files
+  void stop(std::string text, const Finding &, When);
+
+ private:
+  const std::string name, restart_file, dump_file;
+  const Discretization &disc;
+  const StepState &step;
+  const std::vector<Part *> &parts;
+  // the particle of a solid or wall that a fluid particle is nearest to
+  struct Neighbor {
+    double distance, dx;
+    tagint tag, molecule;
+    int species;
+    bool around;    // is its body on all sides?
+  };
+  Neighbor nearest_body(const Finding &) const;
+  bool too_near(const Neighbor &) const;
+  std::vector<Part::Effect> effects(bool of_fluid) const;
+  std::string advice(const Finding &, When, const Neighbor &) const;
+  std::string shorter_step(const Finding &, bool &suspect) const;
+  void go_back(bool advanced);
+  std::string write_state();
+  void write_neighbors(const Finding &) const;
+};
 
 class Check : protected Pointers {
  public:
