@@ -72,9 +72,7 @@ void ComputeFSIAtom::init()
 void ComputeFSIAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
-  const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
+  auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom")->link(disc, step);
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->destroy(array_atom);

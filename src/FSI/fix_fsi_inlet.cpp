@@ -122,12 +122,8 @@ void FixFSIInlet::read_given(const std::string *velocity, const std::string &pre
 
 void FixFSIInlet::init()
 {
-  auto *const fix_fsi = FixFSI::find(lmp, end.label);
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
-  ghosts = &fix_fsi->ghosts;
-  number_density = &fix_fsi->number_density;
+  auto *const fix_fsi =
+      FixFSI::find(lmp, end.label)->link(disc, step, ledger, ghosts, number_density);
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", end.label);
   if (disc->density_fluid != Discretization::CONTINUITY)

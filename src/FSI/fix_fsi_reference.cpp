@@ -59,9 +59,7 @@ void FixFSIReference::init()
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   images.clear_planes();
   if (resting) return;
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix FSI_REFERENCE");
-  disc = &fix_fsi->disc;
-  messages = &fix_fsi->ghosts;
+  FixFSI::find(lmp, "Fix FSI_REFERENCE")->link(disc, messages);
   find_planes();
   if (!any()) {
     made.clear();

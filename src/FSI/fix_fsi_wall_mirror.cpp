@@ -167,10 +167,7 @@ void FixFSIWallMirror::init()
     if (domain->periodicity[w.axis])
       error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", face(w),
                  "xyz"[w.axis]);
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
+  FixFSI::find(lmp, "Fix fsi/wall/mirror")->link(disc, step, ledger);
   for (const auto *other : fixes_of<FixFSIWallMirror>(lmp))
     for (const auto &w : walls) check_same(w, *other);
 }

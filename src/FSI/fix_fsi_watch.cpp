@@ -88,9 +88,7 @@ double FixFSIWatch::compute_vector(int k)
 
 void FixFSIWatch::init()
 {
-  const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/watch");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/watch")->link(disc, step);
   halt = std::make_unique<Stop>(lmp, "Fix fsi/watch", *disc, *step, fix_fsi->parts);
 }
 

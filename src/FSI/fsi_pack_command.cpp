@@ -839,10 +839,7 @@ class Packing : protected Pointers {
     surface = !region.empty() ? surface_of_region(lmp, region)
         : !stl.empty()        ? surface_of_stl(lmp, stl)
                               : surface_of_outline(lmp, outline);
-    auto *const fix = FixFSI::find(lmp, "Fsi/pack");
-    disc = &fix->disc;
-    step = &fix->step;
-    ledger = &fix->ledger;
+    FixFSI::find(lmp, "Fsi/pack")->link(disc, step, ledger);
     lmp->init();
     refuse_bonded();
     double finest = INFINITY;    // where levels meet only their events move what is there

@@ -117,9 +117,7 @@ State PairFSISolidTL::make_state(const Material &m) const
 void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
-  auto *const fix_fsi = FixFSI::find(lmp, style);
-  clamps = &fix_fsi->clamps;
-  check = &fix_fsi->check;
+  auto *const fix_fsi = FixFSI::find(lmp, style)->link(clamps, check);
   check_contact();
   const int dim = disc->dim;
   if (plane_stress && dim == 3) refuse(error, Refused::PLANE_3D);
