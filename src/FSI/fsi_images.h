@@ -107,26 +107,20 @@ class Images {
     }
   }
 
-  // positions and velocities of atoms and images, as of the last update()
-  void update(double **x, double **v)
+  // positions of atoms and images, as of the last update()
+  void update(double **x)
   {
     if (!any()) return;
-    if (xs.size() != (size_t) end()) xs.resize(end()), vs.resize(end());
+    if (xs.size() != (size_t) end()) xs.resize(end());
     std::copy_n(x, first, xs.data());
-    std::copy_n(v, first, vs.data());
-    rows.resize(6 * all.size());
+    rows.resize(3 * all.size());
     for (size_t k = 0; k < all.size(); k++) {
-      double *const row = &rows[6 * k];
-      xs[first + k] = row;
-      vs[first + k] = row + 3;
-      const Mirror &m = all[k].mirror;
-      m.reflect(x[all[k].of], row);
-      for (int d = 0; d < 3; d++) row[3 + d] = m.sign[d] * v[all[k].of][d];
+      xs[first + k] = &rows[3 * k];
+      all[k].mirror.reflect(x[all[k].of], xs[first + k]);
     }
   }
   double **positions(double **x) { return any() ? xs.data() : x; }
-  double **velocities(double **v) { return any() ? vs.data() : v; }
-  double memory_usage() const { return bytes_of(all, xs, vs, rows); }
+  double memory_usage() const { return bytes_of(all, xs, rows); }
 
  private:
   struct Image {
@@ -136,7 +130,7 @@ class Images {
   int group = 0, first = 0;
   std::vector<Image> all;
   std::unordered_map<int64_t, int> number;
-  std::vector<double *> xs, vs;
+  std::vector<double *> xs;
   std::vector<double> rows;
 };
 
