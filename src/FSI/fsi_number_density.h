@@ -41,8 +41,8 @@ class NumberDensity : protected Pointers {
   void renew();
   // of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
   void find(double *n) const;
-  // sum_j grad_i W_ij/psi_bulk of fluids: components one after the other, with room for ghosts
-  std::vector<double> find_gradients() const;
+  // h |sum_j grad_i W_ij|/psi_bulk of fluids, of local atoms
+  std::vector<double> find_asymmetry() const;
 
  private:
   Discretization &disc;
@@ -100,7 +100,6 @@ class SurfaceDeficit final : public Part, protected Pointers {
   std::vector<double> earlier;    // densities before it, for the ledger
   void pass(double dt);
   void begin();
-  std::vector<double> gradients() const;
   void follow();
   double energy_loss(int i, double now, double change) const;
 };
