@@ -219,9 +219,9 @@ template <class T, int D, bool BOTH, int FLAGS> class ShiftOfRow {
       if constexpr (SLOPES && IMAGES) {
         T v_back[D];
         for (int d = 0; d < D; d++) v_back[d] = mirror.sign[d] * v[d];
-        Shift<D>::slopes_of_pair(part, mirrors_flow * g, back, v_back);
+        slopes_of_pair<D>(part + D, mirrors_flow * g, back, v_back);
       } else if constexpr (SLOPES)
-        Shift<D>::slopes_of_pair(part, g, x, v);
+        slopes_of_pair<D>(part + D, g, x, v);
       if constexpr (EDGES || SLOPES)
         part[N] = *rate_j;
       else

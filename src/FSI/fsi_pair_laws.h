@@ -110,6 +110,18 @@ struct DensityDiffusion {
   }
 };
 
+// What two particles are in the sums that the gradient of the velocity comes of: V x (x) g by its
+// components, then V v (x) g. Times V_i it is the same for both. v_ij: v_i - v_j
+template <int D, class T>
+FSI_INLINE void slopes_of_pair(T *part, const T &g, const T *x_ij, const T *v_ij)
+{
+  for (int a = 0; a < D; a++) {
+    const T gx = g * x_ij[a], gv = g * v_ij[a];
+    for (int b = a; b < D; b++) part[Sym<D>::id(a, b)] = gx * x_ij[b];
+    for (int b = 0; b < D; b++) part[Sym<D>::N + a * D + b] = gv * x_ij[b];
+  }
+}
+
 // Particle shifting (delta-plus-SPH: Sun, Colagrossi, Marrone and Zhang 2017, Comput. Methods
 // Appl. Mech. Eng. 315, 25):
 //   delta r_i = -C c h dt sum_j V_j [1 + 0.2 (W_ij/W(dx))^4] grad_i W_ij,
@@ -201,18 +213,6 @@ template <int D> struct Shift {
     part[2 * D] = g * rsq;
   }
   static constexpr bool is_vector(int k, bool with_edges) { return k < (with_edges ? 2 * D : D); }
-
-  // what two fluid particles are in the sums that the gradient of the velocity comes of; v_ij:
-  // v_i - v_j
-  template <class T>
-  FSI_INLINE static void slopes_of_pair(T *part, const T &g, const T *x_ij, const T *v_ij)
-  {
-    for (int a = 0; a < D; a++) {
-      const T gx = g * x_ij[a], gv = g * v_ij[a];
-      for (int b = a; b < D; b++) part[D + Sym<D>::id(a, b)] = gx * x_ij[b];
-      for (int b = 0; b < D; b++) part[D + Sym<D>::N + a * D + b] = gv * x_ij[b];
-    }
-  }
 
   // the factors of these sums where what j sees is what i sees under these signs of axes
   static void signs_of_slopes(const double *sign, double *factor)
