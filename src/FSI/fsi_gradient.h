@@ -14,17 +14,10 @@
 // Gradients at a particle from its neighbors: grad u_i = sum_j (u_j - u_i) (x) G_ij, the weights
 // G_ij from moving least squares about i.
 //
-// Exact for linear fields (Bonet and Lok 1999 give the same property), or for quadratic ones. At a
-// free face, where all neighbors are on one side, a gradient that is only exact for linear fields
-// is that of a place about 0.6 dx inside the body: a bent plate with n particles across comes out
-// soft by an error of order 1/n. Exactness for quadratic fields removes that error and costs
-// nothing per step where the weights are computed once, in the reference configuration.
-//
-// There is one quadratic term that a face is better without: the square of the distance along its
-// normal. Neighbors on one side hardly tell it from the linear term, and the weights that do, -3/2,
-// 2, -1/2 for three layers, make the stiffest mode of the body. Without it a body bears steps twice
-// as long, and a free plate's frequency is nearer to the exact one (doc/src/theory.rst,
-// Total-Lagrangian solids).
+// Exact for linear fields (Bonet and Lok 1999 give the same property), or for quadratic ones:
+// linear ones make a bent plate soft, since at a free face they give the gradient of a place
+// inside. One quadratic term a face is better without: the square of the distance along its normal,
+// whose weights make the stiffest mode of the body (doc/notes/solids.md).
 
 #ifndef LMP_FSI_GRADIENT_H
 #define LMP_FSI_GRADIENT_H

@@ -261,15 +261,10 @@ template <class K> double central_length_sq(const K &kernel, double dx)
   return (K::DIM + 2) * sum / (PLACES * lattice_number_density(kernel, dx));
 }
 
-// The elasticity that a lattice of fluid particles has and the fluid has not.
-//
-// A fluid strained without a change of area (3D: volume) keeps its density. The number density
-// psi = sum W of its particles, which is what continuity follows and pressure works on, does not:
-// on a square or simple cubic lattice psi(e) = psi (1 + s e^2/2 + ...), and the work p dpsi/psi
-// is that of a solid with the modulus s p. s > 0 stiffens a flow (waves are too fast); where
-// s < 0 a lattice under pressure gives way by itself. It is an error that does not fall with dx.
-//
-// s is a sum over the neighbors of second derivatives of W(|F x|), g = W'/r:
+// The elasticity that a lattice of fluid particles has and the fluid has not (doc/notes/fluid.md):
+// a strain e that keeps the volume changes the number density, psi(e) = psi (1 + s e^2/2 + ...),
+// and the lattice has the modulus s p. On a square or simple cubic one s is a sum over the
+// neighbors of second derivatives of W(|F x|), g = W'/r:
 //   stretch, F = diag(exp e, exp -e):   sum (W'' - g) (x^2 - y^2)^2/r^2 + 2 g (x^2 + y^2)
 //   shear, F = 1 + e x (x) y:           sum (W'' - g) x^2 y^2/r^2 + g y^2
 // By symmetry any other strain that keeps the volume is, at small e, a sum of these.

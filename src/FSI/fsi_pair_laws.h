@@ -50,14 +50,10 @@ struct ArtificialViscosity {
 //   central, along the line of centers, as Monaghan and Gingold 1983 with Monaghan's 2005 factor
 //   2(d+2), but l^2, a constant (central_length_sq), in the place of r^2:
 //     F_ij = V_i V_j (d + 2)(eta_i + eta_j) (v_ij.x_ij)/l^2 grad_i W_ij
-// Both papers add 0.01 h^2 to r^2, which makes the viscosity 0.6 % smaller; but nothing is
-// singular here: grad_i W_ij = g x_ij, g is finite. x (x) x/r^2 is not smooth where r = 0, so on
-// a lattice its sums depend on the direction of shear: with r^2 and the quintic, h = dx, a flow
-// along the rows has 0.83 of its viscosity and one across them 1.17; with l^2 1.00. Both are the
-// Laplacian of an incompressible flow. The plain one takes eta |grad v|^2 from the flow, the
-// central one 2 eta e:e, e the rate of strain: only that is right at a free surface (Colagrossi,
-// Antuono, Souto-Iglesias and Le Touze 2011), and only that keeps angular momentum; the plain one
-// is quieter in shear.
+// With r^2 sums on a lattice depend on the direction of shear; 0.01 h^2 beside it, as in both
+// papers, makes the viscosity smaller, and nothing is singular here: grad_i W_ij = g x_ij, g is
+// finite (doc/notes/fluid.md, Viscosity). Only the central one is right at a free surface and keeps
+// angular momentum; the plain one is quieter in shear.
 template <int D> struct LaminarViscosity {
   double along;    // (d + 2)/l^2; 0: the plain form
   FSI_INLINE explicit LaminarViscosity(double length_sq) :
@@ -143,12 +139,10 @@ FSI_INLINE void slopes_of_pair(T *part, const T &g, const T *x_ij, const T *v_ij
 //   delta v_i = delta r_i.grad v,  g_ij = grad_i W_ij,
 //     grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,
 // of fluid neighbors alone, exact for linear fields wherever they are, and of their images in
-// walls that slip, which are planes of symmetry of the flow. This does not
-// keep momentum, so it is done where the fluid fills its box: there walls and streams give and
-// take momentum all the time; a jet or a drop has but its own. Density goes along unchanged:
-// delta r.grad rho would be sound. Between open ends alone, where density and volume would drift
-// apart, its rate has the velocity v + delta r/dt of the step before. What each of these is worth
-// and costs: doc/notes/shifting.md. The energy ledger knows nothing of shifting.
+// walls that slip, which are planes of symmetry of the flow. This does not keep momentum, so it is
+// done where the fluid fills its box. Density goes along unchanged; between open ends alone its
+// rate has the velocity v + delta r/dt of the step before. Why, and what each of these is worth:
+// doc/notes/shifting.md. The energy ledger knows nothing of shifting.
 
 // Of a fluid that fills its box neighbors in walls and solids have the factor
 //   1 + a max(0, W_ij - W(2 dx))/W(dx),

@@ -11,17 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Nearly incompressible solids. Bent bodies lock, most with an even number of particles across:
-// the pressure is asked to vanish at more places than the displacements can satisfy. So what
-// lambda exceeds that of a Poisson's ratio of LOCAL acts on a smoothed volumetric strain,
+// Nearly incompressible solids, which would lock (theory.rst, Locking): what lambda exceeds that of
+// a Poisson's ratio of LOCAL acts on a smoothed volumetric strain,
 //   U = sum_i V_i k u(theta_i),  theta_i = sum_j w_ij m_j,
 // i: particles that move; j: i and its partners of the same material; m_j: the law's volumetric
 // strain of F_j (fsi_solid_laws.h). w_ij: weights of a least-squares fit of a linear function
-// to the m_j, at i, with weights 1 - |X|^2/R^2, R the support: sum_j w_ij = 1, sum_j w_ij X_ij = 0.
-// A linear strain, as in bending, stays as it is, so that nothing gets soft; what changes from
-// particle to particle is taken out, as in the finite element Q2/P1. Projected strains: Hughes,
-// Int. J. Numer. Meth. Eng. 15, 1413 (1980); patches of F-bar: de Souza Neto, Pires and Owen, ibid.
-// 62, 353 (2005). The force is minus the derivative of U: j has the stress (q_j/V_j) dm/dF with
+// to the m_j, at i, with weights 1 - |X|^2/R^2, R the support. Projected strains: Hughes, Int. J.
+// Numer. Meth. Eng. 15, 1413 (1980); patches of F-bar: de Souza Neto, Pires and Owen, ibid. 62, 353
+// (2005). The force is minus the derivative of U: j has the stress (q_j/V_j) dm/dF with
 //   q_j = sum_i V_i k u'(theta_i) w_ij.
 // Held particles count in no U: they have no freedom with which to meet a constraint, and clamps
 // would be too stiff by up to 3 per cent.
