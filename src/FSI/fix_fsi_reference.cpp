@@ -280,8 +280,7 @@ std::string FixFSIReference::as_now() const
   std::string text = fmt::format("gradient {} volumes {}", quadratic ? "quadratic" : "linear",
                                  end_corrected ? "corrected" : "plain");
   for (const auto &plane : images.planes.wall)
-    text += fmt::format(" symmetry {}{} {}", "xyz"[plane.axis], plane.side > 0.0 ? "lo" : "hi",
-                        plane.position);
+    text += fmt::format(" symmetry {} {}", plane.face(), plane.position);
   return text;
 }
 

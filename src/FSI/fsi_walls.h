@@ -29,6 +29,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS::FSI {
@@ -44,6 +45,7 @@ struct Wall {
   bool hydrostatic = false;         // are images as much deeper as they are lower?
   int joins = 0;    // of a plane of symmetry: bit of the group whose bodies go on in their images
 
+  std::string face() const { return std::string(1, "xyz"[axis]) + (side > 0.0 ? "lo" : "hi"); }
   FSI_INLINE double distance(const double *x) const { return side * (x[axis] - position); }
   // part of the cell of a particle with spacing dx that is before a plane without end
   double before(const double *x, double dx) const
