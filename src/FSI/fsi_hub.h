@@ -249,10 +249,10 @@ struct StepState {
 // fsi was defined, this rank's part; kept only while such a compute exists.
 struct Ledger {
   // clang-format off
-    enum Term {
-      ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS,
-      LEVELS, NTERM
-    };
+  enum Term {
+    ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS,
+    LEVELS, NTERM
+  };
   // clang-format on
   bool kept = false;
   double energy_out[NTERM] = {};

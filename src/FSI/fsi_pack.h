@@ -56,11 +56,11 @@
 namespace LAMMPS_NS::FSI {
 
 // clang-format off
-  FSI_INLINE double root(double x) { return std::sqrt(x); }
-  FSI_INLINE double lesser(double a, double b) { return a < b ? a : b; }
-  FSI_INLINE double greater(double a, double b) { return a > b ? a : b; }
-  FSI_INLINE double where(bool condition, double a, double b) { return condition ? a : b; }
-  FSI_INLINE bool none(bool condition) { return !condition; }  // a way out, if it is worth a branch
+FSI_INLINE double root(double x) { return std::sqrt(x); }
+FSI_INLINE double lesser(double a, double b) { return a < b ? a : b; }
+FSI_INLINE double greater(double a, double b) { return a > b ? a : b; }
+FSI_INLINE double where(bool condition, double a, double b) { return condition ? a : b; }
+FSI_INLINE bool none(bool condition) { return !condition; }  // a way out, if it is worth a branch
 // clang-format on
 
 #if FSI_PACKS
@@ -90,21 +90,21 @@ struct Pack {
   }
 
   // clang-format off
-    FSI_INLINE friend Pack operator+(const Pack &a, const Pack &b) { return make(a.v + b.v); }
-    FSI_INLINE friend Pack operator-(const Pack &a, const Pack &b) { return make(a.v - b.v); }
-    FSI_INLINE friend Pack operator*(const Pack &a, const Pack &b) { return make(a.v * b.v); }
-    FSI_INLINE friend Pack operator/(const Pack &a, const Pack &b) { return make(a.v / b.v); }
-    FSI_INLINE Pack &operator+=(const Pack &b) { v += b.v; return *this; }
-    FSI_INLINE Pack &operator-=(const Pack &b) { v -= b.v; return *this; }
-    FSI_INLINE friend Pack operator-(const Pack &a) { return make(-a.v); }
-    FSI_INLINE friend Mask operator<(const Pack &a, const Pack &b) { return {a.v < b.v}; }
-    FSI_INLINE friend Pack lesser(const Pack &a, const Pack &b)
-    { return make(a.v < b.v ? a.v : b.v); }
-    FSI_INLINE friend Pack greater(const Pack &a, const Pack &b)
-    { return make(a.v > b.v ? a.v : b.v); }
-    FSI_INLINE friend Pack where(const Mask &condition, const Pack &a, const Pack &b)
-    { return make(condition.m ? a.v : b.v); }
-    FSI_INLINE friend bool none(const Mask &) { return false; }
+  FSI_INLINE friend Pack operator+(const Pack &a, const Pack &b) { return make(a.v + b.v); }
+  FSI_INLINE friend Pack operator-(const Pack &a, const Pack &b) { return make(a.v - b.v); }
+  FSI_INLINE friend Pack operator*(const Pack &a, const Pack &b) { return make(a.v * b.v); }
+  FSI_INLINE friend Pack operator/(const Pack &a, const Pack &b) { return make(a.v / b.v); }
+  FSI_INLINE Pack &operator+=(const Pack &b) { v += b.v; return *this; }
+  FSI_INLINE Pack &operator-=(const Pack &b) { v -= b.v; return *this; }
+  FSI_INLINE friend Pack operator-(const Pack &a) { return make(-a.v); }
+  FSI_INLINE friend Mask operator<(const Pack &a, const Pack &b) { return {a.v < b.v}; }
+  FSI_INLINE friend Pack lesser(const Pack &a, const Pack &b)
+  { return make(a.v < b.v ? a.v : b.v); }
+  FSI_INLINE friend Pack greater(const Pack &a, const Pack &b)
+  { return make(a.v > b.v ? a.v : b.v); }
+  FSI_INLINE friend Pack where(const Mask &condition, const Pack &a, const Pack &b)
+  { return make(condition.m ? a.v : b.v); }
+  FSI_INLINE friend bool none(const Mask &) { return false; }
   // clang-format on
   FSI_INLINE friend Pack root(const Pack &a)
   {
@@ -333,11 +333,11 @@ template <> struct Lanes<Pack> {
 #if defined(__x86_64__)
     // by bits: the places of those that are not set, then the others
     // clang-format off
-      static constexpr int order[16][WIDTH] = {
-          {0, 1, 2, 3}, {1, 2, 3, 0}, {0, 2, 3, 1}, {2, 3, 0, 1},
-          {0, 1, 3, 2}, {1, 3, 0, 2}, {0, 3, 1, 2}, {3, 0, 1, 2},
-          {0, 1, 2, 3}, {1, 2, 0, 3}, {0, 2, 1, 3}, {2, 0, 1, 3},
-          {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}};
+    static constexpr int order[16][WIDTH] = {
+        {0, 1, 2, 3}, {1, 2, 3, 0}, {0, 2, 3, 1}, {2, 3, 0, 1},
+        {0, 1, 3, 2}, {1, 3, 0, 2}, {0, 3, 1, 2}, {3, 0, 1, 2},
+        {0, 1, 2, 3}, {1, 2, 0, 3}, {0, 2, 1, 3}, {2, 0, 1, 3},
+        {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}};
     // clang-format on
     typedef int Places __attribute__((vector_size(WIDTH * sizeof(int))));
     const int out = __builtin_popcount(bits);
