@@ -528,7 +528,7 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
 
 void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 {
-  images.update(atom->x, atom->v);
+  images.update(atom->x);
   double **x = atom->x;
   double **const at = images.positions(atom->x);
   with_kernel(disc->kernel, disc->dim, disc->h, [&](const auto &kernel) {

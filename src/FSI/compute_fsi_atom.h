@@ -14,6 +14,7 @@
 #ifdef COMPUTE_CLASS
 // clang-format off
 ComputeStyle(fsi/atom,ComputeFSIAtom);
+ComputeStyle(fsi/surface/atom,ComputeFSISurfaceAtom);
 // clang-format on
 #else
 
@@ -60,6 +61,22 @@ class ComputeFSIAtom : public Compute {
   const FSI::Shear *shear = nullptr;    // null: nothing needs it
 
   void find(int i, double *of) const;    // all quantities of an atom that something needs
+};
+
+// 1 for fluid particles at a free surface, which a face of a solid or a wall is not; else 0.
+
+class ComputeFSISurfaceAtom : public Compute {
+ public:
+  ComputeFSISurfaceAtom(class LAMMPS *, int, char **);
+  void init() override;
+  void compute_peratom() override;
+  double memory_usage() override;
+
+ private:
+  enum { DIVERGENCE, NUMBER_DENSITY };
+  int rule;
+  double threshold;
+  std::vector<double> sum;    // then the flags
 };
 
 }    // namespace LAMMPS_NS

@@ -397,9 +397,7 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
 // along lines of V W over fluids and over solids
 void ComputeFSIProbe::sum_up()
 {
-  const auto *const fix_fsi = FixFSI::ready(lmp, "Compute fsi/probe");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
+  FixFSI::ready(lmp, "Compute fsi/probe")->link(disc, step);
   for (const auto &s : sampled)
     if (!(s.compute->invoked_flag & INVOKED_PERATOM)) {
       s.compute->compute_peratom();

@@ -24,6 +24,8 @@ FixStyle(fsi,FixFSI);
 
 #include <memory>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -92,6 +94,14 @@ class FixFSI : public FSI::FixFields {
   FSI::Population &population;
   FSI::NumberDensity &number_density;
   FSI::Clamps &clamps;    // rigid bodies
+  // what a style takes of these when a run begins, by their types; const where it only reads
+  template <class... Of> FixFSI *link(Of *&...of)
+  {
+    const auto all = std::make_tuple(&disc, &step, &ledger, &ghosts, &check, &population,
+                                     &number_density, &clamps);
+    ((of = std::get<std::remove_const_t<Of> *>(all)), ...);
+    return this;
+  }
 
  private:
   int given_substeps;

@@ -89,9 +89,7 @@ void FixFSIDt::stop_at(double time)
 
 void FixFSIDt::init()
 {
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/dt")->link(disc, step);
   if (fixes_of<FixFSIDt>(lmp).size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
   if (update->dt <= 0.0 || update->dt >= BIG)
     error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);

@@ -122,12 +122,8 @@ void FixFSIInlet::read_given(const std::string *velocity, const std::string &pre
 
 void FixFSIInlet::init()
 {
-  auto *const fix_fsi = FixFSI::find(lmp, end.label);
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
-  ghosts = &fix_fsi->ghosts;
-  number_density = &fix_fsi->number_density;
+  auto *const fix_fsi =
+      FixFSI::find(lmp, end.label)->link(disc, step, ledger, ghosts, number_density);
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", end.label);
   if (disc->density_fluid != Discretization::CONTINUITY)
@@ -177,17 +173,15 @@ void FixFSIInlet::setup_pre_exchange()
   for (const auto &w : step->walls.wall) {
     const double s = end.side * (w.position - end.position);
     if (w.axis == end.axis && !w.finite && s < 0.5 * disc->dx && s > -end.length)
-      error->all(FLERR, "{}: the mirror wall {}{} at {} closes it", end.name, "xyz"[end.axis],
-                 w.side > 0.0 ? "lo" : "hi", w.position);
+      error->all(FLERR, "{}: the mirror wall {} at {} closes it", end.name, w.face(), w.position);
     const auto [from, to] = std::minmax({end.position, end.end()});
     if (end.has_own_velocity() && w.axis != end.axis && w.velocity[w.axis] != 0.0 &&
         w.lo[end.axis] < to && w.hi[end.axis] > from && comm->me == 0)
-      error->warning(
-          FLERR,
-          "{}: the mirror wall {}{} moves beside its buffer, which has no velocity along "
-          "{}, and pressures go wrong: let a part of it move that ends before the plane "
-          "(range)",
-          end.name, "xyz"[w.axis], w.side > 0.0 ? "lo" : "hi", "xyz"[w.axis]);
+      error->warning(FLERR,
+                     "{}: the mirror wall {} moves beside its buffer, which has no velocity along "
+                     "{}, and pressures go wrong: let a part of it move that ends before the plane "
+                     "(range)",
+                     end.name, w.face(), "xyz"[w.axis]);
   }
   const bool was_filled = filled;
   filled = true;

@@ -59,9 +59,7 @@ void FixFSIReference::init()
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   images.clear_planes();
   if (resting) return;
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix FSI_REFERENCE");
-  disc = &fix_fsi->disc;
-  messages = &fix_fsi->ghosts;
+  FixFSI::find(lmp, "Fix FSI_REFERENCE")->link(disc, messages);
   find_planes();
   if (!any()) {
     made.clear();
@@ -282,8 +280,7 @@ std::string FixFSIReference::as_now() const
   std::string text = fmt::format("gradient {} volumes {}", quadratic ? "quadratic" : "linear",
                                  end_corrected ? "corrected" : "plain");
   for (const auto &plane : images.planes.wall)
-    text += fmt::format(" symmetry {}{} {}", "xyz"[plane.axis], plane.side > 0.0 ? "lo" : "hi",
-                        plane.position);
+    text += fmt::format(" symmetry {} {}", plane.face(), plane.position);
   return text;
 }
 

@@ -142,12 +142,7 @@ void FixFSIRefine::find_types()
 
 void FixFSIRefine::init()
 {
-  auto *const fix_fsi = FixFSI::find(lmp, label);
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
-  ghosts = &fix_fsi->ghosts;
-  population = &fix_fsi->population;
+  FixFSI::find(lmp, label)->link(disc, step, ledger, ghosts, population);
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", label);
   if (finest_dx > 0.0) find_types();

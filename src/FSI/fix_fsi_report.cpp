@@ -85,11 +85,8 @@ FixFSIReport::~FixFSIReport()
 
 void FixFSIReport::init()
 {
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/report")->link(disc, step, population);
   fix_fsi->step.profile = profile.get();
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  population = &fix_fsi->population;
   if (fixes_of<FixFSIReport>(lmp).size() > 1)
     error->all(FLERR, "There can be only one fix fsi/report");
   energy = first_of(computes_of<ComputeFSIEnergy>(lmp));

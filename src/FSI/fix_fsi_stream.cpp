@@ -75,10 +75,7 @@ FixFSIStream::~FixFSIStream() = default;
 
 void FixFSIStream::init()
 {
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
+  FixFSI::find(lmp, "Fix fsi/stream")->link(disc, step, ledger);
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && disc->density_fluid != Discretization::CONTINUITY)

@@ -25,10 +25,12 @@
 #include "fsi_refusals.h"
 #include "fsi_solid_laws.h"
 #include "math_extra.h"
+#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 using namespace LAMMPS_NS;
@@ -203,4 +205,47 @@ void FixFSIStress::find_idle(const Census &all, const Idle &nothing) const
     nothing("Fix fsi/stress", "no solid is hypoelastic");
   else if (all.solids == 0)
     nothing("Fix fsi/stress", "no particle is a solid");
+}
+
+// ---- FSI_HISTORY ----
+
+static constexpr char ID[] = "FSI_HISTORY";
+
+// arguments: columns, name in one word
+static std::string spaced(std::string word)
+{
+  std::replace(word.begin(), word.end(), '_', ' ');
+  return word;
+}
+
+FixFSIHistory::FixFSIHistory(LAMMPS *lmp, int narg, char **arg) :
+    FixFields(lmp, narg, arg, "fix FSI_HISTORY"), of(nullptr),
+    name(narg == 5 ? spaced(arg[4]) : ""), columns(narg == 5 ? atoi(arg[3]) : 0)
+{
+  if (columns < 1) error->all(FLERR, "Fix FSI_HISTORY is made by pair_style fsi/solid/tl alone");
+  fields.set(name, Fields::RESTART, true, of, columns);
+  register_fields();
+}
+
+FixFSIHistory::~FixFSIHistory()
+{
+  if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
+}
+
+FixFSIHistory *FixFSIHistory::keep(LAMMPS *lmp, std::string_view name, int columns)
+{
+  Modify *const modify = lmp->modify;
+  auto *const old = dynamic_cast<FixFSIHistory *>(modify->get_fix_by_id(ID));
+  if (old && old->name == name && old->columns == columns) return old;
+  if (old) {
+    if (lmp->comm->me == 0)
+      lmp->error->warning(FLERR, "Pair style fsi/solid/tl: the {} of its bodies is forgotten",
+                          old->name);
+    modify->delete_fix(ID);
+  }
+  if (name.empty()) return nullptr;
+  std::string word(name);
+  std::replace(word.begin(), word.end(), ' ', '_');
+  return dynamic_cast<FixFSIHistory *>(
+      modify->add_fix(fmt::format("{} all FSI_HISTORY {} {}", ID, columns, word)));
 }

@@ -14,6 +14,7 @@
 #ifdef FIX_CLASS
 // clang-format off
 FixStyle(fsi/stress,FixFSIStress);
+FixStyle(FSI_HISTORY,FixFSIHistory);
 // clang-format on
 #else
 
@@ -22,6 +23,10 @@ FixStyle(fsi/stress,FixFSIStress);
 
 #include "fsi_fields.h"
 #include "fsi_part.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -70,6 +75,26 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   double **left;     // where the last run has left particles, until the next one
   void choose_fields();
   void look_for_turns(const FSI::Discretization &);
+};
+
+// What a law of total-Lagrangian solids keeps of each particle (fsi_law_list.h): it goes with its
+// atom from rank to rank, through restart files and from one pair_style command to the next.
+// Internal: pair_style fsi/solid/tl makes it where a law has a history, and only there.
+
+class FixFSIHistory : public FSI::FixFields {
+ public:
+  FixFSIHistory(class LAMMPS *, int, char **);
+  ~FixFSIHistory() override;
+  int setmask() override { return 0; }
+
+  // that of this name (empty: none) and so many numbers of each particle; what there was of another
+  // is gone. All ranks together
+  static FixFSIHistory *keep(class LAMMPS *, std::string_view name, int columns);
+  double **of;    // of local atoms
+
+ private:
+  const std::string name;
+  const int columns;
 };
 
 }    // namespace LAMMPS_NS

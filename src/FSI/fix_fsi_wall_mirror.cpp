@@ -37,11 +37,6 @@ using namespace FSI;
 
 static constexpr double BIG = 1.0e300, EDGE = HUGE_VAL;    // stand for INF, EDGE
 
-static std::string face(const Wall &w)
-{
-  return std::string(1, "xyz"[w.axis]) + (w.side > 0.0 ? "lo" : "hi");
-}
-
 FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
@@ -144,7 +139,7 @@ void FixFSIWallMirror::check_symmetry() const
       error->all(
           FLERR,
           "Fix fsi/wall/mirror symmetry: wall {} is unlimited, at rest and slips, expected no {}",
-          face(w),
+          w.face(),
           w.finite       ? "range"
               : w.noslip ? "slip no"
                          : "velocity");
@@ -160,19 +155,16 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_given) const
         error->warning(FLERR,
                        "Fix fsi/wall/mirror {}: slip no is of wall {} alone, wall {} slips: slip "
                        "belongs to the wall that it follows",
-                       id, face(walls[a]), face(walls[b]));
+                       id, walls[a].face(), walls[b].face());
 }
 
 void FixFSIWallMirror::init()
 {
   for (const auto &w : walls)
     if (domain->periodicity[w.axis])
-      error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", face(w),
+      error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", w.face(),
                  "xyz"[w.axis]);
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
+  FixFSI::find(lmp, "Fix fsi/wall/mirror")->link(disc, step, ledger);
   for (const auto *other : fixes_of<FixFSIWallMirror>(lmp))
     for (const auto &w : walls) check_same(w, *other);
 }
@@ -189,7 +181,7 @@ void FixFSIWallMirror::check_same(const Wall &w, const FixFSIWallMirror &of) con
       error->all(FLERR,
                  "Fix fsi/wall/mirror {}: wall {} at {:.10g} is twice there, also in fix {}: its "
                  "images would count twice, since they act on all fluids",
-                 id, face(w), w.position, of.id);
+                 id, w.face(), w.position, of.id);
   }
 }
 
@@ -206,13 +198,13 @@ void FixFSIWallMirror::setup(int)
     for (const auto &w : walls) {
       if (species == FLUID && !w.finite && w.distance(x[i]) < -disc->dx)
         error->one(FLERR, "Fluid atom {} at {} is behind the {} wall of fix {}", atom->tag[i],
-                   place_text(x[i]), face(w), id);
+                   place_text(x[i]), w.face(), id);
       if (species == RIGID && w.joins && w.distance(x[i]) < LEAST * disc->dx_of(type[i]))
         error->one(
             FLERR,
             "Wall atom {} is {:g} before the plane of symmetry {} of fix {}: expected half a "
             "spacing, {:g}, or more",
-            atom->tag[i], w.distance(x[i]), face(w), id, 0.5 * disc->dx_of(type[i]));
+            atom->tag[i], w.distance(x[i]), w.face(), id, 0.5 * disc->dx_of(type[i]));
     }
   }
 }
@@ -372,7 +364,7 @@ std::string FixFSIWallMirror::settings(int k) const
 std::string FixFSIWallMirror::faces() const
 {
   std::string all;
-  for (const auto &w : walls) all += (all.empty() ? "" : " ") + face(w);
+  for (const auto &w : walls) all += (all.empty() ? "" : " ") + w.face();
   return all;
 }
 
@@ -406,11 +398,11 @@ void FixFSIWallMirror::restart(char *buf)
       error->warning(FLERR,
                      "Fix fsi/wall/mirror {}: wall {} was put at {} when the restart file was "
                      "written, and is at {} now",
-                     id, face(walls[k]), place[0], start[k]);
+                     id, walls[k].face(), place[0], start[k]);
     if (before != settings(k) && comm->me == 0)
       error->warning(FLERR,
                      "Fix fsi/wall/mirror {}: wall {} had {} when the restart file was written, "
                      "and has {} now",
-                     id, face(walls[k]), before, settings(k));
+                     id, walls[k].face(), before, settings(k));
   }
 }

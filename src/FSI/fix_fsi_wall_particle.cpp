@@ -72,9 +72,7 @@ FixFSIWallParticle::~FixFSIWallParticle()
 
 void FixFSIWallParticle::init()
 {
-  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle")->link(disc, step);
   const auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   if (!fluid)
     error->all(FLERR,

@@ -17,11 +17,11 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_check.h"
 #include "fsi_find.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_rows.h"
-#include "fsi_stop.h"
 #include "group.h"
 #include "math_extra.h"
 #include "neigh_list.h"
@@ -88,9 +88,7 @@ double FixFSIWatch::compute_vector(int k)
 
 void FixFSIWatch::init()
 {
-  const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/watch");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
+  auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/watch")->link(disc, step);
   halt = std::make_unique<Stop>(lmp, "Fix fsi/watch", *disc, *step, fix_fsi->parts);
 }
 

@@ -92,13 +92,11 @@ void BondMaker::check_planes(const std::vector<int> &bare) const
     for (const int i : bare) {
       if (!(atom->mask[i] & plane.joins)) continue;
       const double dx = disc.dx_of(atom->type[i]), d = plane.distance(atom->x[i]);
-      const char *const face = plane.side > 0.0 ? "lo" : "hi";
       if (d < LEAST * dx)
         error->one(FLERR,
-                   "Solid atom {} of body {} is {:g} before the plane of symmetry {}{} {}: "
+                   "Solid atom {} of body {} is {:g} before the plane of symmetry {} {}: "
                    "expected half a spacing, {:g}, or more",
-                   atom->tag[i], atom->molecule[i], d, "xyz"[plane.axis], face, plane.position,
-                   0.5 * dx);
+                   atom->tag[i], atom->molecule[i], d, plane.face(), plane.position, 0.5 * dx);
       if (d < MOST * dx) there.insert(atom->molecule[i]);
       if (d < disc.resolution[atom->type[i]].cut / 2.0) close.insert(atom->molecule[i]);
     }

@@ -100,9 +100,6 @@ void Check::before_init()
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < disc.largest_cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}",
                disc.largest_cut, comm->cutghostuser);
-  if (domain->dimension != disc.dim)
-    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", disc.dim,
-               domain->dimension);
   if (domain->triclinic) refuse(error, Refused::TRICLINIC);
 
   const bool solid_tl = solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;

@@ -278,16 +278,8 @@ void FSIMaterial::command(int narg, char **arg)
   avec->materials[name] = line;
 }
 
-// fsi/set group-ID density value
-// fsi/set group-ID pressure value      density that gives this pressure
-// fsi/set group-ID hydrostatic level
-//   the same for p = rho0 |g| (level - height), height along -g; nothing above the level
-// fsi/set group-ID volume value        mass of a particle that has another place than that of the
-//                                      square or cubic lattice
-// value: a number or, of density, pressure and volume, an atom-style variable
-// The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the
-// uncompressed lattice volumes would say "compressed" where distances do not, and still water would
-// settle 2 % off at c = 10 sqrt(2 g H).)
+// fsi/set (its arguments: fsi_set.rst). The mass follows the density, so that a particle keeps the
+// volume of its place in the lattice: else still water settles off (doc/notes/fluid.md, Density)
 enum { DENSITY, PRESSURE, HYDROSTATIC, VOLUME };
 
 // whether it has been set

@@ -91,7 +91,7 @@ template <int D> void Damage::break_as(double stretch, const Energy &energy, con
 {
   if (bonds.solids.empty()) return;
   move_apart<D>();
-  bonds.images.update(atom->x, atom->v);
+  bonds.images.update(atom->x);
   double **x = bonds.images.positions(atom->x);
   for (size_t s = 0; s < bonds.solids.size(); s++) {
     if (apart < slack[s]) continue;

@@ -21,41 +21,39 @@
 #include <functional>
 #include <vector>
 
-namespace LAMMPS_NS {
-namespace FSI {
+namespace LAMMPS_NS::FSI {
 
-  class Damage : protected Pointers {
-   public:
-    Damage(LAMMPS *lmp, BondStore &bonds) : Pointers(lmp), bonds(bonds) {}
+class Damage : protected Pointers {
+ public:
+  Damage(LAMMPS *lmp, BondStore &bonds) : Pointers(lmp), bonds(bonds) {}
 
-    // Removes bonds longer than stretch times their reference length, and makes the gradient anew
-    // from those left; a particle whose bonds no longer suffice loses them all. The gradient of
-    // those left may be another than that of all: where the energy (per volume, of local atom i)
-    // would grow by it, the particle's weight shrinks instead, so that breaking makes no energy.
-    // Looks only at particles of which a bond may have become too long since.
-    using Energy = std::function<double(int)>;
-    // That of a crushed particle is 0: it keeps its bonds, lest contact pushes from nothing.
-    // spare: how far its partners may move until it is
-    using Spare = std::function<double(int)>;
-    void break_bonds(double stretch, const Energy &, const Spare &);
-    void forget() { seen.clear(); }    // indices have changed
-    double memory_usage() const { return bytes_of(seen, slack); }
+  // Removes bonds longer than stretch times their reference length, and makes the gradient anew
+  // from those left; a particle whose bonds no longer suffice loses them all. The gradient of
+  // those left may be another than that of all: where the energy (per volume, of local atom i)
+  // would grow by it, the particle's weight shrinks instead, so that breaking makes no energy.
+  // Looks only at particles of which a bond may have become too long since.
+  using Energy = std::function<double(int)>;
+  // That of a crushed particle is 0: it keeps its bonds, lest contact pushes from nothing.
+  // spare: how far its partners may move until it is
+  using Spare = std::function<double(int)>;
+  void break_bonds(double stretch, const Energy &, const Spare &);
+  void forget() { seen.clear(); }    // indices have changed
+  double memory_usage() const { return bytes_of(seen, slack); }
 
-   private:
-    BondStore &bonds;
-    // positions of solids and ghosts at the last look, empty = indices have changed; how far
-    // particles have moved apart since indices changed, at most; of each solid, how far they may
-    // before one of its bonds can be too long
-    std::vector<double> seen, slack;
-    double apart = 0.0;
+ private:
+  BondStore &bonds;
+  // positions of solids and ghosts at the last look, empty = indices have changed; how far
+  // particles have moved apart since indices changed, at most; of each solid, how far they may
+  // before one of its bonds can be too long
+  std::vector<double> seen, slack;
+  double apart = 0.0;
 
-    template <int D> void move_apart();
-    template <int D> void break_as(double stretch, const Energy &, const Spare &);
-    template <int D> bool is_longer(int i, int k, double stretch, double **x, double &left) const;
-    void crush(int i, const Spare &, double &left);
-  };
+  template <int D> void move_apart();
+  template <int D> void break_as(double stretch, const Energy &, const Spare &);
+  template <int D> bool is_longer(int i, int k, double stretch, double **x, double &left) const;
+  void crush(int i, const Spare &, double &left);
+};
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::FSI
 
 #endif

@@ -31,12 +31,7 @@
 #include <string>
 #include <vector>
 
-namespace LAMMPS_NS {
-class Atom;
-class Domain;
-class LAMMPS;
-
-namespace FSI {
+namespace LAMMPS_NS::FSI {
   class Keywords;
   class Part;
   class Profile;
@@ -305,7 +300,6 @@ namespace FSI {
   // 0 to 0.5, what tells particles with the same key apart on any number of ranks
   double part_by_place(const double *x, const Domain *);
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::FSI
 
 #endif

@@ -81,13 +81,19 @@ void NumberDensity::find(double *n) const
   });
 }
 
-std::vector<double> NumberDensity::find_gradients() const
+std::vector<double> NumberDensity::find_asymmetry() const
 {
-  const size_t nall = atom->nlocal + atom->nghost;
-  std::vector<double> gradients(disc.dim * nall, 0.0);
-  for (auto *p : parts) p->add_gradient_sum(gradients.data());
-  for (int d = 0; d < disc.dim; d++) ghosts.add(&gradients[d * nall]);
-  return gradients;
+  const int nlocal = atom->nlocal, dim = disc.dim;
+  const size_t nall = nlocal + atom->nghost;
+  std::vector<double> gradient(dim * nall, 0.0), s(nlocal);    // components one after the other
+  for (auto *p : parts) p->add_gradient_sum(gradient.data());
+  for (int d = 0; d < dim; d++) ghosts.add(&gradient[d * nall]);
+  for (int i = 0; i < nlocal; i++) {
+    double ssq = 0.0;
+    for (int d = 0; d < dim; d++) ssq += gradient[d * nall + i] * gradient[d * nall + i];
+    s[i] = disc.h * std::sqrt(ssq);
+  }
+  return s;
 }
 
 // summation: rho_i = m_i psi_i (paper eq. 12)
@@ -227,7 +233,7 @@ void SurfaceDeficit::begin()
   if (!anywhere(any_new, world)) return;
   std::vector<double> psi(nlocal + atom->nghost);
   number_density.find(psi.data());
-  const auto asymmetry = gradients();
+  const auto asymmetry = number_density.find_asymmetry();
   for (int i = 0; i < nlocal; i++)
     if (is_new(i)) {
       const double missing = std::max(0.0, 1.0 - psi[i] / disc.psi_bulk),
@@ -238,24 +244,9 @@ void SurfaceDeficit::begin()
     }
 }
 
-// s of local atoms
-std::vector<double> SurfaceDeficit::gradients() const
-{
-  const int nlocal = atom->nlocal, dim = disc.dim;
-  const size_t nall = nlocal + atom->nghost;
-  const std::vector<double> gradient = number_density.find_gradients();
-  std::vector<double> s(nlocal);
-  for (int i = 0; i < nlocal; i++) {
-    double ssq = 0.0;
-    for (int d = 0; d < dim; d++) ssq += gradient[d * nall + i] * gradient[d * nall + i];
-    s[i] = disc.h * std::sqrt(ssq);
-  }
-  return s;
-}
-
 void SurfaceDeficit::follow()
 {
-  const auto asymmetry = gradients();
+  const auto asymmetry = number_density.find_asymmetry();
   changes.assign(2 * atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &state = disc.state[atom->type[i]];

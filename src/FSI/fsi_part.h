@@ -25,10 +25,7 @@
 #include <string>
 #include <vector>
 
-namespace LAMMPS_NS {
-class LAMMPS;
-
-namespace FSI {
+namespace LAMMPS_NS::FSI {
 
   class Ghosts;
   class Message;
@@ -142,7 +139,6 @@ namespace FSI {
     return false;
   }
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::FSI
 
 #endif

@@ -21,38 +21,36 @@
 
 #include <vector>
 
-namespace LAMMPS_NS {
-namespace FSI {
-  class Cells;
+namespace LAMMPS_NS::FSI {
+class Cells;
 
-  class SelfContact : protected Pointers {
-   public:
-    SelfContact(LAMMPS *lmp, BondStore &bonds) : Pointers(lmp), bonds(bonds) {}
+class SelfContact : protected Pointers {
+ public:
+  SelfContact(LAMMPS *lmp, BondStore &bonds) : Pointers(lmp), bonds(bonds) {}
 
-    double range = 0.0;    // over the spacing; 0: off
-    bool tears = false;    // keyword damage
-    // Pairs as a local particle i sees them, without a bond, or whose bond may have broken by now,
-    // that can come within reach before lists are new. Each belongs to i by half: what one rank
-    // sees of its own particles, no other needs to know.
-    struct SelfPair {
-      int i = 0, j = 0;
-      double reach = 0.0;
-      bool torn = false;    // neighbors in the reference
-    };
-    std::vector<SelfPair> pairs;
-
-    void find_pairs();
-    void begin_to_look();    // for parts that pass through each other
-    void look();
-
-   private:
-    BondStore &bonds;
-    bigint next_look = 0;    // never again once they were named
-    void find_pairs_of(int i, const std::vector<double> &places, const Cells &);
-    double largest_dx() const;
+  double range = 0.0;    // over the spacing; 0: off
+  bool tears = false;    // keyword damage
+  // Pairs as a local particle i sees them, without a bond, or whose bond may have broken by now,
+  // that can come within reach before lists are new. Each belongs to i by half: what one rank
+  // sees of its own particles, no other needs to know.
+  struct SelfPair {
+    int i = 0, j = 0;
+    double reach = 0.0;
+    bool torn = false;    // neighbors in the reference
   };
+  std::vector<SelfPair> pairs;
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+  void find_pairs();
+  void begin_to_look();    // for parts that pass through each other
+  void look();
+
+ private:
+  BondStore &bonds;
+  bigint next_look = 0;    // never again once they were named
+  void find_pairs_of(int i, const std::vector<double> &places, const Cells &);
+  double largest_dx() const;
+};
+
+}    // namespace LAMMPS_NS::FSI
 
 #endif

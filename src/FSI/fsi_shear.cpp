@@ -35,31 +35,15 @@ static constexpr int numbers_of(int dim)
   return dim * dim + 1;
 }
 
-namespace {
-// Of a particle: sum of V x (x) g by its components, then that of V v (x) g. Times V_i what a pair
-// is in them is the same for both.
-template <int D> struct Sums {
-  static constexpr int N = Sym<D>::N + D * D, ROW = (N + 3) / 4 * 4;
-
-  template <class T>
-  FSI_INLINE static void of_pair(const T &g, const T (&x)[D], const T (&v)[D], T (&part)[ROW])
-  {
-    for (T &p : part) p = 0.0;
-    for (int a = 0; a < D; a++) {
-      const T gx = g * x[a], gv = g * v[a];
-      for (int b = a; b < D; b++) part[Sym<D>::id(a, b)] = gx * x[b];
-      for (int b = 0; b < D; b++) part[Sym<D>::N + a * D + b] = gv * x[b];
-    }
-  }
-};
-}    // namespace
+// of a particle: sums of slopes_of_pair(), by V_i
+template <int D> static constexpr int NSUMS = (Sym<D>::N + D * D + 3) / 4 * 4;
 
 // OF_FLUIDS: the neighbors take part, too
 template <class T, class K, bool IMAGES, bool OF_FLUIDS>
 static void add_rows(const RowSpan rows, const Mirror &mirror, const K &kernel,
                      const FluidParticles &in, const ForceLaws &laws, double *sums)
 {
-  constexpr int D = K::DIM, ROW = Sums<D>::ROW;
+  constexpr int D = K::DIM, ROW = NSUMS<D>;
   const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
   auto *const sum = reinterpret_cast<double(*)[ROW]>(sums);
   run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
@@ -77,6 +61,7 @@ static void add_rows(const RowSpan rows, const Mirror &mirror, const K &kernel,
       for_neighbors<Number, IMAGES>(row, [&](const int *j, const Number &weight) FSI_INLINE_LAMBDA {
         const Particle<Number, D> pj(point, j);
         Number x[D], v[D], u[D], part[ROW];
+        for (Number &p : part) p = 0.0;
         for (int d = 0; d < D; d++)
           u[d] = OF_FLUIDS ? pj.v[d]
               : thin       ? 2.0 * pj.v[d] - mirror.own_velocity(d, pi.v[d])
@@ -90,13 +75,13 @@ static void add_rows(const RowSpan rows, const Mirror &mirror, const K &kernel,
         if (IMAGES) g = weight * g;
         if constexpr (std::is_same_v<Number, double>)
           if (in.visible.part) g = as_visible(in, j, g);
-        Sums<D>::of_pair(g, x, v, part);
+        slopes_of_pair<D>(part, g, x, v);
         for (int k = 0; k < ROW; k++) of_i[k] += part[k];
         if (!OF_FLUIDS) return;
         if (IMAGES) {
           for (int d = 0; d < D; d++) x[d] = -mirror.sign[d] * x[d];
           rubbing_apart<IMAGES>(mirror, pj.v, pi.v, v);
-          Sums<D>::of_pair(g, x, v, part);
+          slopes_of_pair<D>(part, g, x, v);
         }
         Lanes<Number>::add_rows(part, sum, j);
       });
@@ -183,7 +168,7 @@ void Shear::for_rows(PairSets &pairs, const FluidParticles &particles, Loop loop
 template <int D>
 void Shear::find_gradients(PairSets &pairs, const FluidParticles &particles, const ForceLaws &laws)
 {
-  constexpr int ROW = Sums<D>::ROW, N = Sym<D>::N;
+  constexpr int ROW = NSUMS<D>, N = Sym<D>::N;
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
   sums.assign((size_t) ROW * nall, 0.0);
   gradients.assign((size_t) numbers_of(D) * nall, 0.0);

@@ -25,8 +25,7 @@
 
 #include <vector>
 
-namespace LAMMPS_NS {
-namespace FSI {
+namespace LAMMPS_NS::FSI {
 
   struct Discretization;
   struct Walls;
@@ -102,7 +101,6 @@ namespace FSI {
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true
   };
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::FSI
 
 #endif

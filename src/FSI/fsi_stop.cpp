@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_stop.h"
+#include "fsi_check.h"
 
 #include "atom.h"
 #include "comm.h"

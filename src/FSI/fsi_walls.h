@@ -29,10 +29,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
-namespace LAMMPS_NS {
-namespace FSI {
+namespace LAMMPS_NS::FSI {
 
   struct Wall {
     int axis = 0;                     // normal direction 0,1,2
@@ -45,6 +45,7 @@ namespace FSI {
     bool hydrostatic = false;         // are images as much deeper as they are lower?
     int joins = 0;    // of a plane of symmetry: bit of the group whose bodies go on in their images
 
+  std::string face() const { return std::string(1, "xyz"[axis]) + (side > 0.0 ? "lo" : "hi"); }
     FSI_INLINE double distance(const double *x) const { return side * (x[axis] - position); }
     // part of the cell of a particle with spacing dx that is before a plane without end
     double before(const double *x, double dx) const
@@ -102,8 +103,7 @@ namespace FSI {
       int mask = 0;
       for (int k = 0; k < n; k++) {
         const double a = wall[k].distance(x);
-        if (a >= (wall[k].finite ? 0.0 : -behind) && a < cut && wall[k].spans(x, cut))
-          mask |= 1 << k;
+      if (a >= (wall[k].finite ? 0.0 : -behind) && a < cut && wall[k].spans(x, cut)) mask |= 1 << k;
       }
       return mask;
     }
@@ -160,8 +160,8 @@ namespace FSI {
 
    private:
     // does the line from x_i to the image cross every wall of the set inside its extent?
-    FSI_INLINE bool passes(const Reflection &s, const double *xi, const double *dx,
-                           const double *ai, const double *aj) const
+  FSI_INLINE bool passes(const Reflection &s, const double *xi, const double *dx, const double *ai,
+                         const double *aj) const
     {
       for (int k = 0; k < s.n; k++) {
         const Wall &w = wall[s.w[k]];
@@ -253,8 +253,7 @@ namespace FSI {
     struct Depth {
       double depth = 0.0, rate = 0.0;
     };
-    double before(const double *x, const double *v, double dx, const Depth *depth,
-                  double &rate) const
+  double before(const double *x, const double *v, double dx, const Depth *depth, double &rate) const
     {
       double part = 1.0;
       rate = 0.0;
@@ -283,8 +282,7 @@ namespace FSI {
     // Calls f(reflection, rsq, dx) for every image that x_i sees. mask: walls near both; rsq0 =
     // |x_i - x_j|^2 (0 and x_j = x_i for the images of i itself).
     template <class F>
-    void images(int mask, double rsq0, const double *xi, const double *xj, double cutsq,
-                F &&f) const
+  void images(int mask, double rsq0, const double *xi, const double *xj, double cutsq, F &&f) const
     {
       for (const auto &s : reflections) {
         if ((s.mask & mask) != s.mask) continue;
@@ -349,7 +347,6 @@ namespace FSI {
     }
   };
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::FSI
 
 #endif

@@ -17,8 +17,8 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_history.h"
 #include "fix_fsi_reference.h"
+#include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
@@ -176,11 +176,7 @@ std::vector<int> PairFSI::types_of_levels() const
 void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
-  auto *const fix_fsi = FixFSI::find(lmp, "Pair style " + style);
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
-  ghosts = &fix_fsi->ghosts;
+  auto *const fix_fsi = FixFSI::find(lmp, "Pair style " + style)->link(disc, step, ledger, ghosts);
   if (!fix_fsi->ids_checked) check_ids(lmp, facts_of_solids(lmp).style == Facts::OF_SOLIDS);
   fix_fsi->ids_checked = true;
   const auto all = pairs_of<PairFSI>(lmp);

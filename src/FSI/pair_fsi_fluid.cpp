@@ -973,5 +973,6 @@ double PairFSIFluid::memory_usage()
 {
   return fields.memory_usage() + pairs.memory_usage() + members->cut_solids->memory_usage() +
       members->shear->memory_usage() + members->implicit->memory_usage() +
-      bytes_of(points, forces, viscous_forces, pressure_over_density);
+      bytes_of(points, forces, viscous_forces, pressure_over_density) +
+      (disc && disc->sight ? disc->sight->memory_usage() : 0.0);
 }

@@ -95,11 +95,7 @@ void PairFSIGrain::init_style()
   if (!atom->style_match("fsi") || !atom->radius_flag)
     error->all(FLERR,
                "Pair style fsi/grain requires atom_style hybrid fsi sphere: grains have a radius");
-  auto *const fix_fsi = FixFSI::find(lmp, "Pair style fsi/grain");
-  disc = &fix_fsi->disc;
-  step = &fix_fsi->step;
-  ledger = &fix_fsi->ledger;
-  ghosts = &fix_fsi->ghosts;
+  FixFSI::find(lmp, "Pair style fsi/grain")->link(disc, step, ledger, ghosts);
   if (!facts_of_fluids(lmp).style) refuse(error, Refused::GRAINS);
   neighbor->add_request(this);
 }

@@ -18,7 +18,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_history.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
@@ -118,9 +117,7 @@ State PairFSISolidTL::make_state(const Material &m) const
 void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
-  auto *const fix_fsi = FixFSI::find(lmp, style);
-  clamps = &fix_fsi->clamps;
-  check = &fix_fsi->check;
+  auto *const fix_fsi = FixFSI::find(lmp, style)->link(clamps, check);
   check_contact();
   const int dim = disc->dim;
   if (plane_stress && dim == 3) refuse(error, Refused::PLANE_3D);
@@ -234,7 +231,7 @@ void PairFSISolidTL::compute(int eflag, int vflag)
   check_tally();
   warn_of_contact();
   if (step->substeps > 1 && !update->setupflag)
-    return reference->images.update(atom->x, atom->v);    // for fix fsi/watch
+    return reference->images.update(atom->x);    // for fix fsi/watch
   internal_forces();
   add_forces();
 }
@@ -334,7 +331,7 @@ template <int D> void PairFSISolidTL::gather_points()
         fsolid[i][d] = 0.0;
       }
   if (images.any()) {
-    images.update(atom->x, atom->v);
+    images.update(atom->x);
     images.for_each([&](int k, int of, const Mirror &m, bool) {
       for (int d = 0; d < D; d++) {
         points[NP * k + d] = m.x[d] + m.sign[d] * points[NP * of + d];
@@ -742,7 +739,7 @@ double PairFSISolidTL::volume_ratio(int i) const
 void PairFSISolidTL::begin_stress()
 {
   forward_positions();    // ghosts still stand where they were in the middle of the step
-  reference->images.update(atom->x, atom->v);
+  reference->images.update(atom->x);
   if (!smoothed.on()) return;
   disc->dim == 2 ? gather_points<2>() : gather_points<3>();
   smooth_strains(true);

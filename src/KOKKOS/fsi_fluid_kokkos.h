@@ -25,8 +25,7 @@
 #include "fsi_kernel.h"
 #include "neigh_list_kokkos.h"
 
-namespace LAMMPS_NS {
-namespace FSI {
+namespace LAMMPS_NS::FSI {
 
   // Arrays on the device; they grow only.
   template <class T> using DeviceArray = Kokkos::View<T *, LMPDeviceType>;
@@ -320,7 +319,6 @@ namespace FSI {
     }
   };
 
-}    // namespace FSI
-}    // namespace LAMMPS_NS
+}    // namespace LAMMPS_NS::FSI
 
 #endif
