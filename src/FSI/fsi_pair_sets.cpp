@@ -465,14 +465,14 @@ void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *pl
       if ((wmask[i] & mask) != mask) continue;
       const Wall &wall = wall_of[reflections[k].w[0]];
       const double farthest = reach - wall.distance(x[i]);
-        const double *of_pair = parts_of_row;
+      const double *of_pair = parts_of_row;
       const bool with_own = of_own_type && (!finite || sees(i, i, walls, k, places));
       images[k].add(i, row.j, row.n, with_own, false, [&](int j) {
         const double seen = hidden ? *of_pair++ : 1.0;
-          if ((wmask[j] & mask) != mask || (finite && !sees(i, j, walls, k, places))) return false;
+        if ((wmask[j] & mask) != mask || (finite && !sees(i, j, walls, k, places))) return false;
         if (hidden) set.visible_images[k].push_back(seen);
         return hidden || finite || wall.distance(x[j]) < farthest;
-        });
+      });
     }
   }
 }
