@@ -90,6 +90,8 @@ void Check::before_init()
   if (neighbor->includegroup) refuse(error, Refused::INCLUDE);
   if (fluid && neighbor->build_once) refuse(error, Refused::ONCE);
   if (has_reduced_ghosts(comm)) refuse(error, Refused::REDUCED_GHOSTS);
+  if (atom->ellipsoid_flag || atom->line_flag || atom->tri_flag || atom->body_flag)
+    refuse(error, Refused::SHAPES);
   if (utils::strmatch(force->pair_style, "^hybrid/scaled")) refuse(error, Refused::SCALED);
   if (force->ftm2v != 1.0)
     error->all(FLERR,

@@ -275,6 +275,8 @@ void FSI::give_defaults(int i, Atom *atom, const Discretization &disc)
       atom->radius_flag && std::fabs(atom->rmass[i] / (MY_PI / 6.0) - 1.0) < 1e-15;
   if (atom->rmass[i] == 0.0 || of_sphere) atom->rmass[i] = lattice_mass(disc, type);
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
+  // likewise its radius: to fix rigid these are points, no spheres
+  if (atom->radius_flag && atom->radius[i] == 0.5) atom->radius[i] = 0.0;
 }
 
 bool FSI::is_moved(int i, const LAMMPS *lmp)

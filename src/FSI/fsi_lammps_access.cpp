@@ -40,7 +40,7 @@ struct OfModify : public Modify {
 struct OfComm : public CommBrick {
   using CommBrick::nswap, CommBrick::sendlist, CommBrick::sendnum, CommBrick::sendproc,
       CommBrick::recvproc, CommBrick::firstrecv, CommBrick::recvnum, CommBrick::pbc_flag,
-      CommBrick::pbc, CommBrick::multi_reduce;
+      CommBrick::pbc, CommBrick::multi_reduce, CommBrick::bordergroup;
 };
 
 struct OfGravity : public FixGravity {
@@ -77,7 +77,7 @@ bool FSI::find_exchanges(const Comm *comm, std::vector<Exchange> &found)
 
 bool FSI::has_reduced_ghosts(const Comm *comm)
 {
-  return comm->*&OfComm::multi_reduce;
+  return comm->*&OfComm::multi_reduce || comm->*&OfComm::bordergroup;
 }
 
 bool FSI::is_disabled(const FixGravity *fix)

@@ -52,7 +52,7 @@ namespace FSI {
   // false: comm_style tiled, which has others
   bool find_exchanges(const Comm *, std::vector<Exchange> &);
 
-  bool has_reduced_ghosts(const Comm *);    // comm_modify reduce/multi
+  bool has_reduced_ghosts(const Comm *);    // comm_modify reduce/multi, group
   bool is_disabled(const FixGravity *), has_variable(const FixGravity *);
   int number_of(const Fix *);
 

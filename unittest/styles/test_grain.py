@@ -441,3 +441,41 @@ def test_bad_input(tmp_path, what):
     result = lammps(tmp_path, text.replace(old, new) + "run 1\n", test_fsi=FILE)
     assert result.status and len(result.errors) == 1
     assert re.search(message, result.errors[0]), result.errors
+
+
+@pytest.mark.parametrize("style", ("fsi", "hybrid fsi sphere"))
+def test_floats_beside_grains_are_of_points(tmp_path, style):
+    """LAMMPS makes particles with a radius of 0.5, which fix rigid would take for spheres."""
+    text = f"""
+units si
+dimension 2
+boundary f f p
+atom_style {style}
+region box block -0.1 1 -0.1 1 -0.005 0.005
+create_box 2 box
+lattice sq 0.01 origin 0.5 0.5 0
+region wet block 0 0.05 0 0.05 INF INF units box
+region bar block 0.5 0.7 0.5 0.6 INF INF units box
+create_atoms 1 region wet
+create_atoms 2 region bar
+group water type 1
+group bar type 2
+fsi/material water fluid rho 1000
+fsi/material bar wall rho 500
+pair_style fsi/fluid sound 10
+pair_coeff * * NULL water bar
+fix 1 water fsi 0.01
+fix 4 bar fsi/wall/particle
+fix 5 bar rigid single
+variable couple atom x-0.6
+fix 6 bar addforce 0 v_couple 0
+timestep 1e-4
+run 100
+print "SPIN $(omega(bar,z)) $(inertia(bar,zz))"
+"""
+    done = run(tmp_path, text)
+    spin, inertia = map(float, next(line for line in done.output.splitlines()
+                                    if line.startswith("SPIN")).split()[1:])
+    # 10 rows of 20 particles, force x on each; fix rigid's first step has none
+    couple = 10 * sum((0.01 * (k - 9.5))**2 for k in range(20))
+    assert spin == pytest.approx(couple / inertia * 0.01, rel=0.02)
