@@ -465,13 +465,22 @@ void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *pl
       if ((wmask[i] & mask) != mask) continue;
       const Wall &wall = wall_of[reflections[k].w[0]];
       const double farthest = reach - wall.distance(x[i]);
+      if (hidden) {
       const double *of_pair = parts_of_row;
-      const bool with_own = of_own_type && (!finite || sees(i, i, walls, k, places));
-      images[k].add(i, row.j, row.n, with_own, false, [&](int j) {
-        const double seen = hidden ? *of_pair++ : 1.0;
+        images[k].add(i, row.j, row.n, false, false, [&](int j) {
+          const double seen = *of_pair++;
         if ((wmask[j] & mask) != mask || (finite && !sees(i, j, walls, k, places))) return false;
-        if (hidden) set.visible_images[k].push_back(seen);
-        return hidden || finite || wall.distance(x[j]) < farthest;
+          set.visible_images[k].push_back(seen);
+          return true;
+        });
+      } else if (finite)
+        images[k].add(i, row.j, row.n, of_own_type && sees(i, i, walls, k, places), false,
+                      [&](int j) {
+                        return (wmask[j] & mask) == mask && sees(i, j, walls, k, places);
+                      });
+      else
+        images[k].add(i, row.j, row.n, of_own_type, false, [&](int j) {
+          return (wmask[j] & mask) == mask && wall.distance(x[j]) < farthest;
       });
     }
   }
