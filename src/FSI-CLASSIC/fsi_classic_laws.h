@@ -74,8 +74,8 @@ struct ArtificialStress {
 };
 
 // Hourglass control of the updated-Lagrangian solid, a penalty on what the linear velocity field
-// of a particle's neighborhood does not explain (after Zhang, Haidn and Hu 2024, arXiv
-// 2409.11474): every pair has a spring of rate
+// of a particle's neighborhood does not explain (after Zhang, Wu, Lourenco and Hu 2024,
+// arXiv 2409.11474): every pair has a spring of rate
 //   d f_i/dt = xi G V_i V_j (-g_ij) [v_ji - (L_i + L_j) x_ji/2],  grad_i W_ij = g_ij x_ij,
 // whose forces are kept summed per particle, in a vector that turns with it. Zero in any uniform
 // gradient; second order in the spacing in a smooth field.

@@ -134,8 +134,8 @@ FSI_INLINE void slopes_of_pair(T *part, const T &g, const T *x_ij, const T *v_ij
 // closes.
 //
 // The flow does not move with the particles: where a particle comes to it takes the velocity of
-// the flow there (Sun, Colagrossi, Marrone, Antuono and Zhang 2019, Comput. Phys. Commun. 244,
-// 36, have it as a term of the rate):
+// the flow there (Sun, Colagrossi, Marrone, Antuono and Zhang 2019, Comput. Methods Appl. Mech.
+// Eng. 348, 912, have it as a term of the rate):
 //   delta v_i = delta r_i.grad v,  g_ij = grad_i W_ij,
 //     grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,
 // of fluid neighbors alone, exact for linear fields wherever they are, and of their images in

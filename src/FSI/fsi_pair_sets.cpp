@@ -466,10 +466,10 @@ void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *pl
       const Wall &wall = wall_of[reflections[k].w[0]];
       const double farthest = reach - wall.distance(x[i]);
       if (hidden) {
-      const double *of_pair = parts_of_row;
+        const double *of_pair = parts_of_row;
         images[k].add(i, row.j, row.n, false, false, [&](int j) {
           const double seen = *of_pair++;
-        if ((wmask[j] & mask) != mask || (finite && !sees(i, j, walls, k, places))) return false;
+          if ((wmask[j] & mask) != mask || (finite && !sees(i, j, walls, k, places))) return false;
           set.visible_images[k].push_back(seen);
           return true;
         });
@@ -481,7 +481,7 @@ void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *pl
       else
         images[k].add(i, row.j, row.n, of_own_type, false, [&](int j) {
           return (wmask[j] & mask) == mask && wall.distance(x[j]) < farthest;
-      });
+        });
     }
   }
 }

@@ -53,6 +53,7 @@ static void add_rows(const RowSpan rows, const Mirror &mirror, const K &kernel,
       const int type_j = in.type[row.j[0]];
       const State &other = in.state[type_j];
       if (other.species == RIGID && !other.noslip) continue;    // there is no fluid beyond it
+      if (OF_FLUIDS && !other.shears_as(in.state[in.type[row.i]])) continue;
       const bool thin = in.ratio[type_j].thin;
       const double backfill = backfill_of(in, row.i, type_j);
       const Particle<Number, D> pi(point[row.i]);
@@ -104,6 +105,7 @@ static void add_differences(const RowSpan rows, const Mirror &mirror, const K &k
   run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
     using Number = decltype(number);
     for (const Row &row : rows) {
+      if (row.n == 0 || !in.state[in.type[row.i]].shears_as(in.state[in.type[row.j[0]]])) continue;
       const double *const Li = L + (size_t) N * row.i;
       const Particle<Number, D> pi(point[row.i]);
       Number of_i[D * D];
@@ -205,7 +207,7 @@ void Shear::find_gradients(PairSets &pairs, const FluidParticles &particles, con
 
 // What the kernel has smoothed is undone to first order (van Cittert; Stolz and Adams 1999):
 //   grad v_i += sum_j V_j W_ij (grad v_i - grad v_j)  over fluids and their images, as far as both
-// gradients are known
+// gradients are known, of one viscosity
 template <int D> void Shear::sharpen(PairSets &pairs, const FluidParticles &particles)
 {
   constexpr int ROW = D == 2 ? 4 : 12;    // the gradient by its components

@@ -298,3 +298,44 @@ def test_implicit_needs_the_plain_form(tmp_path):
                                            form="laminar/visc/central laminar/implicit yes",
                                            drive="", sound=3, height=1))
     assert done.status != 0 and "laminar/implicit requires laminar/visc" in done.errors[0]
+
+
+@pytest.mark.parametrize("law", ("viscosity 1", "power 1 1"))
+def test_shear_rate_at_the_face_of_another_fluid(tmp_path, law):
+    """Two layers in Couette flow, at rest from the exact solution: each has its own shear rate up to
+    the face, where it jumps by the ratio of viscosities, and both have one stress."""
+    thick, thin, stress, rows = 100.0, 1.0, 0.5, 12
+    deck = f"""
+units si
+dimension 2
+boundary p f p
+atom_style fsi
+region box block 0 0.5 -0.5 1.5 -0.04 0.04
+create_box 2 box
+lattice sq {1 / rows} origin 0.5 0.5 0
+region low block INF INF 0 0.5 INF INF units box
+region high block INF INF 0.5 1 INF INF units box
+create_atoms 1 region low
+create_atoms 2 region high
+fsi/material low fluid rho 1 viscosity {thick}
+fsi/material high fluid rho 1 {law}
+pair_style fsi/fluid sound 20 tension yes laminar/visc
+pair_coeff * * NULL low high
+fix 1 all fsi {1 / rows} quintic 1.0
+fix 2 all fsi/wall/mirror ylo 0 slip no yhi 1 slip no velocity {0.5 * stress * (1 / thick + 1)} 0 0
+variable v atom {stress}*(v_low*y/{thick}+!v_low*(0.5/{thick}+y-0.5))
+variable low atom y<0.5
+velocity all set v_v 0 0 units box
+compute 1 all fsi/atom shear/rate sxy
+timestep 1e-6
+run 0
+write_dump all custom rates.dump y c_1[*] modify sort id
+"""
+    run(tmp_path, deck)
+    y, rate, sxy = np.loadtxt(tmp_path / "rates.dump", skiprows=9).T
+    low = y < 0.5
+    # rows beside the face have neighbors on one side alone, whose slopes are exact for a straight
+    # profile; sharpening and the walls' images change no straight profile either
+    assert rate[low] == pytest.approx(stress / thick, rel=1e-6)
+    assert rate[~low] == pytest.approx(stress / thin, rel=1e-6)
+    assert sxy == pytest.approx(stress, rel=1e-6)
