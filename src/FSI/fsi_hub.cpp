@@ -26,7 +26,6 @@
 #include "fsi_part.h"
 #include "fsi_preset.h"
 #include "fsi_record.h"
-#include "fsi_sight.h"
 #include "lammps.h"
 #include "math_const.h"
 #include "modify.h"
@@ -104,14 +103,6 @@ void FSI::choose_skin(LAMMPS *lmp, double dx)
   if (lmp->comm->me == 0)
     utils::logmesg(
         lmp, "Fix fsi: neighbor skin {:g}, 0.4 spacings; command neighbor sets another\n", skin);
-}
-
-void Discretization::find_sight(LAMMPS *lmp, const Walls &walls, bool segments)
-{
-  if (!has_thin() && !segments)
-    sight.reset();
-  else if (!sight)
-    sight = std::make_shared<Sight>(lmp, *this, walls, thin);
 }
 
 void Discretization::enter_state(int type, const State &s)

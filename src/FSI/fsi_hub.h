@@ -102,7 +102,6 @@ struct Discretization : Resolution {
   std::vector<double> thin;            // per atom type, 1: fluids do not see each other through it
   std::shared_ptr<Sight> sight;    // past those and segments of mirror walls; null: there are none
   bool has_thin() const { return std::count(thin.begin(), thin.end(), 1.0) > 0; }
-  void find_sight(LAMMPS *, const Walls &, bool segments);
   bool noslip_walls = false;
   double mach;    // largest Mach number of fluids
 

@@ -76,7 +76,7 @@ namespace FSI {
     bool kept = false, noslip = false;
     double guard = 0.0;    // distance at which it begins to push fluid off
 
-    // Fluids: do both have one shear rate where they meet? Of others it jumps, as the stress does not
+    // fluids: is it one shear rate where they meet? Of others it jumps, for the stress does not
     bool shears_as(const State &b) const { return viscosity == b.viscosity && law == b.law; }
     bool is_body() const { return species == SOLID || species == RIGID; }
     // square of the fastest waves: sound of a fluid, longitudinal waves of a solid, (K + 4G/3)/rho0

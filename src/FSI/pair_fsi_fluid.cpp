@@ -271,7 +271,10 @@ void PairFSIFluid::init_style()
                PRESETS[preset - 1].name);
   FixFSI *const fix = FixFSI::find(lmp, style);
   fix->disc.find_levels();
-  fix->disc.find_sight(lmp, fix->step.walls, any_is(fixes_of<Part>(lmp), &Facts::segments));
+  if (!disc->has_thin() && !any_is(fixes_of<Part>(lmp), &Facts::segments))
+    fix->disc.sight.reset();
+  else if (!disc->sight)
+    fix->disc.sight = std::make_shared<Sight>(lmp, *disc, step->walls, disc->thin);
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.emplace(lmp, *disc, has_solids());
   members->light_solids.emplace(lmp, *disc, *step, *ledger, *ghosts,

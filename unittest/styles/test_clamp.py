@@ -390,8 +390,8 @@ def test_torques_of_particles():
         lines = ["thermo_style custom step", "run 0", "unfix sph", f"fix sph moving fsi {DX} "
                  "wendland 1.5"] if before else ["thermo_style custom step"]
         s, body = in_water(1e-4, fluid="sound 10", atom_style="hybrid fsi sphere", commands=[
-            "set type 2 diameter 0.01", *lines, "group water type 1", "delete_atoms group water compress no",
-            "fix twist held external pf/callback 1 1"])
+            "set type 2 diameter 0.01", *lines, "group water type 1",
+            "delete_atoms group water compress no", "fix twist held external pf/callback 1 1"])
         s.n = body.sum()
 
         def twist(lmp, step, nlocal, tag, x, f):
