@@ -863,7 +863,7 @@ class PairFSISolidTL::Wet {
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
           m[a][b] = (a == b) + t / atom->rmass[i] * step.impedance[Sym<3>::id(a, b)][i];
-      if (m[0][0] + m[1][1] == 2.0) continue;    // dry
+      if (m[0][0] + m[1][1] + m[2][2] == 3.0) continue;    // dry
       MathExtra::invert3(m, p.implicit);
       all.push_back(p);
     }
