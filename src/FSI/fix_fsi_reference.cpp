@@ -211,7 +211,10 @@ void FixFSIReference::follow_commands()
     if (n == 0) continue;
     of_rank[0] += n;
     of_rank[1]++;
-    of_rank[2] += !renew(i);
+    if (!renew(i)) {
+      keep_first(i, 0);
+      of_rank[2]++;
+    }
     bodies.insert(atom->molecule[i]);
   }
   MPI_Allreduce(of_rank, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
