@@ -16,7 +16,9 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix_fsi.h"
 #include "fsi_find.h"
+#include "fsi_hub.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
 
@@ -88,9 +90,17 @@ void AtomVecFSI::data_atom_post(int ilocal)
                rmass[ilocal]);
 }
 
-// of the first atom: a data file has none of what fixes and pair styles keep of solids
+// A data file has none of what fixes and pair styles keep of solids: they have the density at which
+// there is no pressure. When the first atom comes, a warning
 void AtomVecFSI::pack_data_pre(int ilocal)
 {
+  if (ilocal == 0) {
+    auto *const fix_fsi = FixFSI::there(lmp);
+    of_data = fix_fsi && !fix_fsi->disc.state.empty() ? &fix_fsi->disc : nullptr;
+  }
+  kept = rho[ilocal];
+  if (of_data && of_data->state[atom->type[ilocal]].species == SOLID)
+    rho[ilocal] = of_data->state[atom->type[ilocal]].rho0;
   if (ilocal > 0 || comm->me > 0) return;
   if (!any_is(fixes_of<Part>(lmp), &Facts::keeps_solids) &&
       !any_is(pairs_of<Part>(lmp), &Facts::keeps_solids))
@@ -98,6 +108,11 @@ void AtomVecFSI::pack_data_pre(int ilocal)
   error->warning(FLERR,
                  "Data files hold no strain, stress or bonds of solids: read again, bodies are at "
                  "rest in the shape that they have. write_restart keeps all");
+}
+
+void AtomVecFSI::pack_data_post(int ilocal)
+{
+  rho[ilocal] = kept;
 }
 
 int AtomVecFSI::property_atom(const std::string &name)

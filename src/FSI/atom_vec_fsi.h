@@ -29,8 +29,9 @@ AtomStyle(fsi,AtomVecFSI);
 
 namespace LAMMPS_NS {
 namespace FSI {
+  struct Discretization;
   class Record;
-}
+}    // namespace FSI
 
 // Particles of fluid or solid: mass, density, and the body they belong to (the molecule ID; 0 for
 // fluid). These are what a restart must carry for every particle. Stress and the like live with the
@@ -47,6 +48,7 @@ class AtomVecFSI : virtual public AtomVec {
   void create_atom_post(int) override;
   void data_atom_post(int) override;
   void pack_data_pre(int) override;
+  void pack_data_post(int) override;
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
 
@@ -62,6 +64,8 @@ class AtomVecFSI : virtual public AtomVec {
 
  private:
   double *rmass, *rho;
+  const FSI::Discretization *of_data = nullptr;    // while a data file is written
+  double kept = 0.0;                               // density of that particle meanwhile
 };
 
 }    // namespace LAMMPS_NS
