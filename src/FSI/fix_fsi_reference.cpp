@@ -296,6 +296,7 @@ void FixFSIReference::write_restart(FILE *fp)
   Record record(lmp, "fix FSI_REFERENCE");
   record.add("bonds", made.empty() ? as_now() : made);
   record.add("numbers of a bond", std::to_string(nvalue));
+  record.add("stressed by", stressed_by);
   record.add("positions", keeps_places ? "yes" : "no");
   if (keeps_images) {
     record.add("images", "yes");
@@ -311,6 +312,7 @@ void FixFSIReference::restart(char *buf)
 {
   const Record record(lmp, "fix FSI_REFERENCE", buf);
   made = record.value("bonds");
+  if (record.has("stressed by")) stressed_by = record.value("stressed by");
   if (record.value("numbers of a bond") != std::to_string(nvalue))
     error->all(FLERR,
                "The restart file has bonds of {} numbers, this version of pair_style fsi/solid/tl "

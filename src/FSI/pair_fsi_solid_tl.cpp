@@ -137,6 +137,7 @@ void PairFSISolidTL::init_style()
   reference->self.range = self_contact ? contact_range : 0.0;
   reference->self.tears = damage > 0.0;
   reference->self.range_of_images = contact_range;
+  follow_law();
   comm_forward = 2 * dim;
   comm_reverse = dim;
 
@@ -165,6 +166,22 @@ void PairFSISolidTL::make_laws()
   if (!fix_stress) refuse(error, Refused::LAW_STRESS, laws.facts().name);
   if (fix_stress->plane_stress == plane_stress) return;
   refuse(error, Refused::PLANE_OF_STRESS, laws.facts().name, plane_stress ? "stress" : "strain");
+}
+
+// Bodies that have strain keep it from one law to the next: rates know nothing of what was before,
+// and strains of what has flowed.
+void PairFSISolidTL::follow_law()
+{
+  const std::string now = laws.facts().by_rate ? "rates" : "strains";
+  std::string &before = reference->stressed_by;
+  if (!before.empty() && before != now && reference->any() && comm->me == 0)
+    error->warning(
+        FLERR,
+        laws.facts().by_rate
+            ? "Pair style fsi/solid/tl law {}: the shear stress of its bodies is forgotten"
+            : "Pair style fsi/solid/tl law {}: the stress of fix fsi/stress is forgotten",
+        laws.facts().name);
+  before = now;
 }
 
 const double *const *PairFSISolidTL::history() const

@@ -128,6 +128,7 @@ class PairFSISolidTL : public PairFSI {
   double stored(int i) const;
   template <int D> double spare(int i) const;
   void make_laws();
+  void follow_law();
   // per particle, stress of rates or the law's own; or null
   const double *const *history() const;
   int nmoving = 0,
