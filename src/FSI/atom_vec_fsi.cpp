@@ -16,9 +16,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
-#include "fix_fsi.h"
 #include "fsi_find.h"
-#include "fsi_hub.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
 
@@ -94,13 +92,10 @@ void AtomVecFSI::data_atom_post(int ilocal)
 // there is no pressure. When the first atom comes, a warning
 void AtomVecFSI::pack_data_pre(int ilocal)
 {
-  if (ilocal == 0) {
-    auto *const fix_fsi = FixFSI::there(lmp);
-    of_data = fix_fsi && !fix_fsi->disc.state.empty() ? &fix_fsi->disc : nullptr;
-  }
+  const size_t t = atom->type[ilocal];
   kept = rho[ilocal];
-  if (of_data && of_data->state[atom->type[ilocal]].species == SOLID)
-    rho[ilocal] = of_data->state[atom->type[ilocal]].rho0;
+  if (t < density_of_solids.size() && density_of_solids[t] > 0.0)
+    rho[ilocal] = density_of_solids[t];
   if (ilocal > 0 || comm->me > 0) return;
   if (!any_is(fixes_of<Part>(lmp), &Facts::keeps_solids) &&
       !any_is(pairs_of<Part>(lmp), &Facts::keeps_solids))

@@ -29,7 +29,6 @@ AtomStyle(fsi,AtomVecFSI);
 
 namespace LAMMPS_NS {
 namespace FSI {
-  struct Discretization;
   class Record;
 }    // namespace FSI
 
@@ -54,6 +53,7 @@ class AtomVecFSI : virtual public AtomVec {
 
   // lines of a material file that command fsi/material has given, by name
   std::map<std::string, std::string> materials;
+  std::vector<double> density_of_solids;    // in data files, by type; 0: of no solid
   // until the next run: what fixes that are gone had of each particle (Fields::pack_all), and their
   // record, by the names that they gave (FixFields::hand_on)
   struct Kept {
@@ -64,8 +64,7 @@ class AtomVecFSI : virtual public AtomVec {
 
  private:
   double *rmass, *rho;
-  const FSI::Discretization *of_data = nullptr;    // while a data file is written
-  double kept = 0.0;                               // density of that particle meanwhile
+  double kept = 0.0;    // density, while a data file is written
 };
 
 }    // namespace LAMMPS_NS

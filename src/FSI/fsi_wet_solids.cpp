@@ -119,8 +119,8 @@ bool LightSolids::any() const
 
 // use(i, j, x_ij, seen, k, eta, reflection) for pairs of a fluid and a solid, whose change of
 // velocity w within the step changes the force on the fluid by k x_ij (seen.w), if it is light, +
-// eta w. Of an image of j in the walls of a reflection (else null) seen is x_ij as j itself sees it,
-// mirrored.
+// eta w. Of an image of j in the walls of a reflection (else null) seen is x_ij, mirrored, as j
+// itself sees it.
 template <class Use>
 void LightSolids::for_wet_pairs(PairSets &sets, const FluidParticles &particles, Use use) const
 {

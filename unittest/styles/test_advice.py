@@ -340,8 +340,8 @@ def test_what_artificial_viscosity_is_worth(tmp_path, dim, expected):
 def test_hourglass_of_a_free_body(tmp_path, held):
     """Forces of pair_style fsi/solid that turn with each particle: for bodies that are held."""
     text = DECK.replace("fsi/solid/tl\npair", "fsi/solid hourglass 0.1 gradient quadratic\npair")
-    text = text.replace("fsi/solid/tl", "fsi/solid").replace("timestep", "fix stress all fsi/stress\n"
-                                                             "timestep")
+    text = text.replace("fsi/solid/tl", "fsi/solid").replace(
+        "timestep", "fix stress all fsi/stress\ntimestep")
     if held:
         text = text.replace("fix sph all", "region foot block INF INF INF 0.02 INF INF units box\n"
                             "group foot region foot\ngroup foot intersect foot plate\n"

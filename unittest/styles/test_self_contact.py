@@ -264,8 +264,8 @@ def test_torn_pieces_meet_again():
 
 
 def test_breaking_adds_no_energy():
-    """A metal bar, torn and sheared: what loses so many bonds that no gradient is left has compressed
-    ones, too, on which contact acted at once: 2.1 J of 85 J in one step."""
+    """A metal bar, torn and sheared: what loses so many bonds that no gradient is left has also
+    compressed ones, on which contact acted at once: 2.1 J of 85 J in one step."""
     dx = 0.01
     x = lattice([20, 4], dx) - [10 * dx, 0, 0]
     v = np.zeros_like(x)
@@ -280,7 +280,7 @@ def test_breaking_adds_no_energy():
         for _ in range(1500):
             s.run(1)
             sums.append(s.ledger().sum())
-        print(f"sum {sums[0]:.3f} to {sums[-1]:.3f} J, most in one step {np.diff(sums).max():.1e} J")
+        print(f"sum {sums[0]:.3f} to {sums[-1]:.3f} J, at most {np.diff(sums).max():.1e} J a step")
         assert sums[-1] < sums[0] - 1
         assert np.diff(sums).max() < 0.01
 

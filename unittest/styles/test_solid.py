@@ -381,11 +381,11 @@ def test_virial_does_not_depend_on_the_place(tmp_path, hourglass, plane):
 
 
 def test_no_pressure_from_a_data_file(tmp_path):
-    """Data files hold no stress of bodies: a compressed one, read again, has no pressure either."""
+    """Data files hold no stress of bodies: a compressed one has no pressure either."""
     named = {"rubber": MATERIAL}
     kinds = {"solid_style": "fsi/solid", "solid": "gradient corrected", "dt": 2e-5}
     text = deck("-0.2 0.3 -0.2 0.3", 0.01, named, "variable v atom -40*(x-0.05)",
-                "velocity all set v_v NULL NULL units box", "run 60", "write_data end.data", "run 0",
+                "velocity all set v_v NULL NULL units box", "run 60", "write_data end.data",
                 watch("before.dump", 1), "run 0", boundary="f f p", body="0 0.1 0 0.06", **kinds)
     before = run(tmp_path, text).frames("before.dump")[-1]
     again = start(boundary="f f p") + "read_data end.data\n" + physics(
