@@ -88,9 +88,14 @@ void AtomVecFSI::data_atom_post(int ilocal)
                rmass[ilocal]);
 }
 
-// of the first atom: a data file has none of what fixes and pair styles keep of solids
+// A data file has none of what fixes and pair styles keep of solids: they have the density at which
+// there is no pressure. When the first atom comes, a warning
 void AtomVecFSI::pack_data_pre(int ilocal)
 {
+  const size_t t = atom->type[ilocal];
+  kept = rho[ilocal];
+  if (t < density_of_solids.size() && density_of_solids[t] > 0.0)
+    rho[ilocal] = density_of_solids[t];
   if (ilocal > 0 || comm->me > 0) return;
   if (!any_is(fixes_of<Part>(lmp), &Facts::keeps_solids) &&
       !any_is(pairs_of<Part>(lmp), &Facts::keeps_solids))
@@ -98,6 +103,11 @@ void AtomVecFSI::pack_data_pre(int ilocal)
   error->warning(FLERR,
                  "Data files hold no strain, stress or bonds of solids: read again, bodies are at "
                  "rest in the shape that they have. write_restart keeps all");
+}
+
+void AtomVecFSI::pack_data_post(int ilocal)
+{
+  rho[ilocal] = kept;
 }
 
 int AtomVecFSI::property_atom(const std::string &name)

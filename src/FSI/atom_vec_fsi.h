@@ -30,7 +30,7 @@ AtomStyle(fsi,AtomVecFSI);
 namespace LAMMPS_NS {
 namespace FSI {
   class Record;
-}
+}    // namespace FSI
 
 // Particles of fluid or solid: mass, density, and the body they belong to (the molecule ID; 0 for
 // fluid). These are what a restart must carry for every particle. Stress and the like live with the
@@ -47,11 +47,13 @@ class AtomVecFSI : virtual public AtomVec {
   void create_atom_post(int) override;
   void data_atom_post(int) override;
   void pack_data_pre(int) override;
+  void pack_data_post(int) override;
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
 
   // lines of a material file that command fsi/material has given, by name
   std::map<std::string, std::string> materials;
+  std::vector<double> density_of_solids;    // in data files, by type; 0: of no solid
   // until the next run: what fixes that are gone had of each particle (Fields::pack_all), and their
   // record, by the names that they gave (FixFields::hand_on)
   struct Kept {
@@ -62,6 +64,7 @@ class AtomVecFSI : virtual public AtomVec {
 
  private:
   double *rmass, *rho;
+  double kept = 0.0;    // density, while a data file is written
 };
 
 }    // namespace LAMMPS_NS

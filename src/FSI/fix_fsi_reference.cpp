@@ -63,6 +63,7 @@ void FixFSIReference::init()
   find_planes();
   if (!any()) {
     made.clear();
+    self.joined.clear();
     choose(images.planes.any(), self.range > 0.0);
   } else if (made != as_now())
     error->all(FLERR,
@@ -100,6 +101,8 @@ void FixFSIReference::setup_post_neighbor()
   reserve_everywhere();
   if (changes == before) find_partners();
   refuse_split_bodies();
+  self.find_joined();
+  self.find_image_pairs();
   end_taking();
   self.begin_to_look();
   self.look();
@@ -120,6 +123,7 @@ void FixFSIReference::find_partners()
     return is_solid(i);
   });
   self.find_pairs();
+  self.find_image_pairs();
 }
 
 // Solids cannot become something else between runs, nor the reverse.
@@ -207,7 +211,10 @@ void FixFSIReference::follow_commands()
     if (n == 0) continue;
     of_rank[0] += n;
     of_rank[1]++;
-    of_rank[2] += !renew(i);
+    if (!renew(i)) {
+      keep_first(i, 0);
+      of_rank[2]++;
+    }
     bodies.insert(atom->molecule[i]);
   }
   MPI_Allreduce(of_rank, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -289,8 +296,15 @@ void FixFSIReference::write_restart(FILE *fp)
   Record record(lmp, "fix FSI_REFERENCE");
   record.add("bonds", made.empty() ? as_now() : made);
   record.add("numbers of a bond", std::to_string(nvalue));
+  record.add("stressed by", stressed_by);
   record.add("positions", keeps_places ? "yes" : "no");
-  if (keeps_images) record.add("images", "yes");
+  if (keeps_images) {
+    record.add("images", "yes");
+    std::vector<double> bodies;
+    for (const auto &[body, bits] : self.joined)
+      bodies.insert(bodies.end(), {(double) body, (double) bits});
+    record.add("bodies at planes", bodies);
+  }
   record.write(fp);
 }
 
@@ -298,12 +312,18 @@ void FixFSIReference::restart(char *buf)
 {
   const Record record(lmp, "fix FSI_REFERENCE", buf);
   made = record.value("bonds");
+  if (record.has("stressed by")) stressed_by = record.value("stressed by");
   if (record.value("numbers of a bond") != std::to_string(nvalue))
     error->all(FLERR,
                "The restart file has bonds of {} numbers, this version of pair_style fsi/solid/tl "
                "needs {}",
                record.value("numbers of a bond"), nvalue);
   choose(record.has("images"), record.has("positions") && record.value("positions") == "yes");
+  if (record.has("bodies at planes")) {
+    const auto bodies = record.numbers("bodies at planes");
+    for (size_t k = 0; k < bodies.size(); k += 2)
+      self.joined[(tagint) bodies[k]] = (int) bodies[k + 1];
+  }
   has_record = true;
 }
 
@@ -318,5 +338,5 @@ void FixFSIReference::unpack_restart(int i, int nth)
 
 double FixFSIReference::memory_usage()
 {
-  return BondStore::memory_usage() + damage.memory_usage() + bytes_of(self.pairs);
+  return BondStore::memory_usage() + damage.memory_usage() + bytes_of(self.pairs, self.image_pairs);
 }

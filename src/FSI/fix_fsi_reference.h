@@ -55,6 +55,7 @@ class FixFSIReference : public FSI::BondStore {
   void restart(char *) override;
   double memory_usage() override;
 
+  std::string stressed_by;      // strains or rates, the law of the last run; empty: none yet
   bool end_corrected = true;    // volumes of the energy's integral with corrections at faces
   FSI::Damage &damage;
   FSI::SelfContact &self;

@@ -416,6 +416,22 @@ static void cut_by_walls(const Census &c)
     }
 }
 
+// Hourglass control of pair_style fsi/solid turns forces of a pair with each particle by itself:
+// their sum and moment do not vanish, which a clamp bears.
+static void hourglass(const Census &c)
+{
+  if (!c.solids.hourglass) return;
+  std::set<tagint> held, moving;
+  for (int i = 0; i < c.atom->nlocal; i++)
+    if (c.solid(i)) (c.moves(i) ? moving : held).insert(c.atom->molecule[i]);
+  held = gather(held, c.world);
+  for (const tagint body : gather(moving, c.world))
+    if (!held.count(body))
+      return c.warn("body {} has no held particles: hourglass of pair_style fsi/solid does not "
+                    "keep its energy and momentum. Leave it out, or take pair_style fsi/solid/tl",
+                    body);
+}
+
 // law svk and neohookean know no yield stress, and fix fsi/stress only where it is told to
 static void yields(const Census &c)
 {
@@ -822,6 +838,7 @@ static void advise(const Census &c)
     if (c.at_first()) contact(c);
     cut_by_walls(c);
     yields(c);
+    hourglass(c);
   }
   for (const auto &[of, given, but, text] : COUNTED)
     if (c.any(of) && (given == NKIND || c.any(given)) && (but == NKIND || !c.any(but)))

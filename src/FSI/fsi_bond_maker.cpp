@@ -492,7 +492,7 @@ bool Quadrature::weigh(int i)
     if (lo && hi && lo + hi < 4) continue;
     w *= 1.0 + correction[lo] + correction[hi];
   }
-  bonds.weight(i) = w;
+  if (bonds.weight(i) > 0.0) bonds.weight(i) = w;    // else crushed, torn off
   return few > 1;
 }
 

@@ -145,10 +145,8 @@ template <int D> bool BondStore::renew_as(int i)
     w[k] = value[2 * D * BOND_BLOCK] * Rsq;    // V_i V_j W: the factor V_i does not matter
   }
   if (weights(n, dX.data(), w.data(), disc->h_of(atom->type[i]), quadratic, G.data()) ==
-      GradientWeights<D>::DEFICIENT) {
-    keep_first(i, 0);
+      GradientWeights<D>::DEFICIENT)
     return false;
-  }
   for (int k = 0; k < n; k++)
     for (int a = 0; a < D; a++) bond(i, k)[a * BOND_BLOCK] = G[k * D + a];
   complete(i);

@@ -98,8 +98,7 @@ class BondStore : public Fix {
   void complete(int i);                  // what follows from its bonds
   void move(int i, int from, int to);    // bond number from to the place of another
   void keep_first(int i, int n) { nbond[slot[i]] = n; }
-  bool renew(int i);    // the gradient's weights from the bonds that are left; if they do not
-                        // suffice, none is
+  bool renew(int i);    // the gradient's weights from the bonds that are left; do they suffice?
   void expect(size_t more);    // bodies are large, and lists that grow are there twice meanwhile
 
   // when a run begins; afterwards a solid that was none is an error

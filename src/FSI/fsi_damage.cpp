@@ -110,7 +110,7 @@ template <int D> void Damage::break_as(double stretch, const Energy &energy, con
     }
     if (kept == n) continue;
     bonds.keep_first(i, kept);
-    bonds.renew(i);
+    if (!bonds.renew(i)) bonds.weight(i) = 0.0;
     crush(i, spare, slack[s]);
     const double after = energy(i);
     if (after > before) bonds.weight(i) *= before / after;

@@ -28,12 +28,13 @@ class Damage : protected Pointers {
   Damage(LAMMPS *lmp, BondStore &bonds) : Pointers(lmp), bonds(bonds) {}
 
   // Removes bonds longer than stretch times their reference length, and makes the gradient anew
-  // from those left; a particle whose bonds no longer suffice loses them all. The gradient of
+  // from those left; a particle whose bonds no longer suffice has no stress, but keeps them until
+  // they are too long, lest contact acts at once on a pair that is near. The gradient of
   // those left may be another than that of all: where the energy (per volume, of local atom i)
   // would grow by it, the particle's weight shrinks instead, so that breaking makes no energy.
   // Looks only at particles of which a bond may have become too long since.
   using Energy = std::function<double(int)>;
-  // That of a crushed particle is 0: it keeps its bonds, lest contact pushes from nothing.
+  // That of a crushed particle is 0: it keeps its bonds, likewise.
   // spare: how far its partners may move until it is
   using Spare = std::function<double(int)>;
   void break_bonds(double stretch, const Energy &, const Spare &);

@@ -80,6 +80,52 @@ void SelfContact::find_pairs_of(int i, const std::vector<double> &places, const 
   });
 }
 
+// A body that damage tears off a plane does not meet its image there, from which it was not apart.
+void SelfContact::find_joined()
+{
+  std::vector<tagint> found;    // bodies and bits
+  for (const int i : bonds.solids) {
+    int bits = 0;
+    for (int k = 0; k < bonds.count(i); k++) bits |= bonds.planes(i, k) & ~Images::HALF;
+    int &known = joined[atom->molecule[i]];
+    if (!(bits & ~known)) continue;
+    known |= bits;
+    found.insert(found.end(), {atom->molecule[i], bits});
+  }
+  found = gather(found, world);
+  for (size_t k = 0; k < found.size(); k += 2) joined[found[k]] |= (int) found[k + 1];
+}
+
+void SelfContact::find_image_pairs()
+{
+  image_pairs.clear();
+  const Images &images = bonds.images;
+  if (!images.planes.any()) return;
+  double most = neighbor->skin;
+  for (int t = 1; t <= atom->ntypes; t++)
+    most = std::max(most, neighbor->skin + range_of_images * bonds.disc->dx_of(t));
+  std::vector<int> apart;
+  for (const int i : bonds.solids)
+    if (images.joins(atom->mask, i) &&
+        !goes_on(atom->molecule[i], images.planes.near(atom->x[i], most)))
+      apart.push_back(i);
+  if (apart.empty()) return;
+  const Cells cells(atom->x, atom->nlocal + atom->nghost, domain->dimension, most, [&](int j) {
+    return bonds.is_solid(j) && images.joins(atom->mask, j);
+  });
+  for (const int i : apart) {
+    const size_t first = image_pairs.size();
+    cells.around(atom->x[i], [&](int j, double rsq) {
+      if (atom->molecule[j] == atom->molecule[i] && rsq < most * most)
+        image_pairs.push_back({i, j});
+    });
+    // sums do not depend on the order of ghosts
+    std::sort(image_pairs.begin() + first, image_pairs.end(), [this](const auto &a, const auto &b) {
+      return atom->tag[a.second] < atom->tag[b.second];
+    });
+  }
+}
+
 void SelfContact::begin_to_look()
 {
   if (next_look != MAXBIGINT) next_look = update->ntimestep;

@@ -12,13 +12,15 @@
 ------------------------------------------------------------------------- */
 
 // A total-Lagrangian body and itself: pairs that contact (fsi_pair_laws.h) acts on, and, without
-// contact, parts of it that pass through each other.
+// contact, parts of it that pass through each other. Its image in a plane of symmetry at which it
+// does not end is another body.
 
 #ifndef LMP_FSI_SELF_CONTACT_H
 #define LMP_FSI_SELF_CONTACT_H
 
 #include "fsi_bond_store.h"
 
+#include <unordered_map>
 #include <vector>
 
 namespace LAMMPS_NS::FSI {
@@ -41,6 +43,19 @@ class SelfContact : protected Pointers {
   std::vector<SelfPair> pairs;
 
   void find_pairs();
+  // likewise, without newton: i and the images of j in planes, or of i itself
+  double range_of_images = 0.0;
+  std::vector<std::pair<int, int>> image_pairs;
+  // by body: bits of the planes through which it has bonds, or had them
+  std::unordered_map<tagint, int> joined;
+  bool goes_on(tagint body, int planes) const
+  {
+    const auto it = joined.find(body);
+    return it != joined.end() && (it->second & planes) == planes;
+  }
+  void find_joined();    // all ranks together
+  void find_image_pairs();
+
   void begin_to_look();    // for parts that pass through each other
   void look();
 

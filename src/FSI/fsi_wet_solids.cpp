@@ -117,73 +117,94 @@ bool LightSolids::any() const
   return std::find(light.begin(), light.end(), 1) != light.end();
 }
 
-// use(i, j, x_ij, k, eta) for pairs of a fluid and a solid, whose change of velocity w within the
-// step changes the force on the fluid by k x_ij (x_ij.w), if it is light, + eta w
+// use(i, j, x_ij, seen, k, eta, reflection) for pairs of a fluid and a solid, whose change of
+// velocity w within the step changes the force on the fluid by k x_ij (seen.w), if it is light, +
+// eta w. Of an image of j in the walls of a reflection (else null) seen is x_ij, mirrored, as j
+// itself sees it.
 template <class Use>
-void LightSolids::for_wet_pairs(const PairSets &sets, const FluidParticles &particles,
-                                Use use) const
+void LightSolids::for_wet_pairs(PairSets &sets, const FluidParticles &particles, Use use) const
 {
   static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
   const int *const type = atom->type;
   const std::vector<char> light = types();
-  for_levels(disc, [&](size_t level, const auto &kernel) {
+  const auto visit = [&](const FluidPairs &pairs, double dx, const Walls::Reflection *reflection,
+                         const auto &kernel) {
     constexpr int D = std::decay_t<decltype(kernel)>::DIM;
-    const PairSet &set = sets.of(level, PairSet::SOLIDS);
-    FluidParticles in = particles;
-    in.ratio = set.ratio.data();
+    const FluidParticles &in = pairs.in;
+    const Mirror mirror = pairs.mirror ? *pairs.mirror : Mirror();
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
-    for (const Row &row : set.rows.rows) {
+    for (const Row &row : pairs.rows) {
+      if (row.n == 0) continue;
       const int i = row.i, t = type[row.j[0]];
       if (!light[t] && !viscous) continue;
       const State &s = disc.state[type[i]];
-      const double z = light[t] * HALF * s.rho0 * s.csq / disc.levels[level].dx * update->dt *
-          backfill_of(in, i, t);
+      const double z = light[t] * HALF * s.rho0 * s.csq / dx * update->dt * backfill_of(in, i, t);
       const double eta = !viscous
           ? 0.0
           : backfill_weight_of(in, i, t) * (step.viscosity ? step.viscosity[i] : s.viscosity);
       for (const int *j = row.j; j < row.j + row.n; j++) {
-        double x[D];
-        difference(point[i].x, point[*j].x, x);
+        double x[D], seen[D];
+        for (int d = 0; d < D; d++) {
+          x[d] = point[i].x[d] - mirror.x[d] - mirror.sign[d] * point[*j].x[d];
+          seen[d] = mirror.sign[d] * x[d];
+        }
         const double rsq = product(x, x), r = std::sqrt(rsq);
         if (rsq >= kernel.cutsq || r == 0.0 || !(atom->mask[*j] & disc.mover->groupbit)) continue;
         const double v = point[i].vol * point[*j].vol * cut_off(in, j, kernel.gradient(r));
-        use(i, *j, x, -2.0 * z * v / r, -4.0 * eta * v);
+        use(i, *j, x, seen, -2.0 * z * v / r, -4.0 * eta * v, reflection);
       }
     }
+  };
+  sets.for_all(step.walls, particles, [&](const PairSet &set, const FluidPairs &pairs, int k) {
+    if (set.what != PairSet::SOLIDS) return;
+    with_kernel(disc.kernel, disc.dim, set.h, [&](const auto &kernel) {
+      visit(pairs, disc.levels[set.level].dx, pairs.mirror ? &step.walls.reflections[k] : nullptr,
+            kernel);
+    });
   });
 }
 
-void LightSolids::find_impedances(const PairSets &sets, const FluidParticles &particles)
+void LightSolids::find_impedances(PairSets &sets, const FluidParticles &particles)
 {
   auto *const z = step.impedance, *const w = step.swerve;
   for (auto *rows : {z, z + 3, w})
     for (int d = 0; d < 3; d++) rows[d].assign(atom->nlocal + atom->nghost, 0.0);
-  for_wet_pairs(sets, particles, [&](int, int j, const auto &x, double k, double eta) {
-    const int dim = std::size(x);
-    for (int a = 0; a < dim; a++)
-      for (int b = a; b < dim; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b] + (a == b) * eta;
-  });
+  for_wet_pairs(sets, particles,
+                [&](int, int j, const auto &, const auto &x, double k, double eta, const auto *) {
+                  const int dim = std::size(x);
+                  for (int a = 0; a < dim; a++)
+                    for (int b = a; b < dim; b++)
+                      z[Sym<3>::id(a, b)][j] += k * x[a] * x[b] + (a == b) * eta;
+                });
   for (int a = 0; a < disc.dim; a++)
     for (int b = a; b < disc.dim; b++) ghosts.add(z[Sym<3>::id(a, b)].data());
 }
 
-void LightSolids::react(const PairSets &sets, const FluidParticles &particles,
+void LightSolids::react(PairSets &sets, const FluidParticles &particles,
                         const std::vector<ComputeFSIForce *> &measures)
 {
-  const int dim = disc.dim;
+  const int dim = disc.dim, nlocal = atom->nlocal;
+  const bool newton = force->newton_pair;
   std::vector<double> more[3];
   auto &w = step.swerve;
   for (int d = 0; d < dim; d++) {
     ghosts.send(w[d].data());
     more[d].assign(w[d].size(), 0.0);
   }
-  for_wet_pairs(sets, particles, [&](int i, int j, const auto &x, double k, double) {
-    for (size_t a = 0; a < std::size(x); a++)
-      for (size_t b = 0; b < std::size(x); b++) {
-        more[a][i] += k * x[a] * x[b] * w[b][j];
-        more[a][j] -= k * x[a] * x[b] * w[b][j];
-      }
-  });
+  for_wet_pairs(sets, particles,
+                [&](int i, int j, const auto &x, const auto &seen, double k, double,
+                    const Walls::Reflection *reflection) {
+                  double push = 0.0;
+                  for (size_t b = 0; b < std::size(x); b++) push += k * seen[b] * w[b][j];
+                  const double share = share_of<double>(i, &j, nlocal, newton);
+                  for (size_t a = 0; a < std::size(x); a++) {
+                    more[a][i] += push * x[a];
+                    more[a][j] -= push * seen[a];
+                    if (reflection)
+                      step.add_wall_force(step.walls.row().pushed(*reflection, a), a,
+                                          share * push * (x[a] - seen[a]));
+                  }
+                });
   for (int d = 0; d < dim; d++) ghosts.add(more[d].data());
   double power = 0.0;    // that on solids is counted in their sub-steps
   for (int i = 0; i < atom->nlocal; i++) {

@@ -66,10 +66,9 @@ namespace FSI {
     bool any() const;
     bool resisted() const { return step.substeps > 1 && (viscous || any()); }
     // particles are those of the loop of forces
-    void find_impedances(const PairSets &, const FluidParticles &);
+    void find_impedances(PairSets &, const FluidParticles &);
     // the reaction: what solids have not got of the impulse, fluids have not given
-    void react(const PairSets &, const FluidParticles &,
-               const std::vector<ComputeFSIForce *> &measures);
+    void react(PairSets &, const FluidParticles &, const std::vector<ComputeFSIForce *> &measures);
 
    private:
     const Discretization &disc;
@@ -78,7 +77,7 @@ namespace FSI {
     Ghosts &ghosts;
     const bool viscous;
     std::vector<char> types() const;
-    template <class Use> void for_wet_pairs(const PairSets &, const FluidParticles &, Use) const;
+    template <class Use> void for_wet_pairs(PairSets &, const FluidParticles &, Use) const;
   };
 
 }    // namespace FSI

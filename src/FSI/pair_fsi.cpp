@@ -193,8 +193,13 @@ void PairFSI::init_style()
   check_same_materials();
   drop_reference();
   if (handles(FLUID, FLUID)) fix_fsi->disc.resolve_levels(types_of_levels());
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (defines(material[t].species)) fix_fsi->disc.enter_state(t, make_state(material[t]));
+  auto &density_of_solids = AtomVecFSI::of(atom)->density_of_solids;
+  density_of_solids.resize(atom->ntypes + 1, 0.0);
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!defines(material[t].species)) continue;
+    fix_fsi->disc.enter_state(t, make_state(material[t]));
+    density_of_solids[t] = material[t].species == SOLID ? material[t].rho0 : 0.0;
+  }
   // before fixes and computes ask for masses
   for (int i = 0; i < atom->nlocal; i++) {
     const int species = disc->state[atom->type[i]].species;

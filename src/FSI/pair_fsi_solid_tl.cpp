@@ -136,6 +136,8 @@ void PairFSISolidTL::init_style()
   reference->end_corrected = !plain;
   reference->self.range = self_contact ? contact_range : 0.0;
   reference->self.tears = damage > 0.0;
+  reference->self.range_of_images = contact_range;
+  follow_law();
   comm_forward = 2 * dim;
   comm_reverse = dim;
 
@@ -164,6 +166,22 @@ void PairFSISolidTL::make_laws()
   if (!fix_stress) refuse(error, Refused::LAW_STRESS, laws.facts().name);
   if (fix_stress->plane_stress == plane_stress) return;
   refuse(error, Refused::PLANE_OF_STRESS, laws.facts().name, plane_stress ? "stress" : "strain");
+}
+
+// Bodies that have strain keep it from one law to the next: rates know nothing of what was before,
+// and strains of what has flowed.
+void PairFSISolidTL::follow_law()
+{
+  const std::string now = laws.facts().by_rate ? "rates" : "strains";
+  std::string &before = reference->stressed_by;
+  if (!before.empty() && before != now && reference->any() && comm->me == 0)
+    error->warning(
+        FLERR,
+        laws.facts().by_rate
+            ? "Pair style fsi/solid/tl law {}: the shear stress of its bodies is forgotten"
+            : "Pair style fsi/solid/tl law {}: the stress of fix fsi/stress is forgotten",
+        laws.facts().name);
+  before = now;
 }
 
 const double *const *PairFSISolidTL::history() const
@@ -460,43 +478,59 @@ const int *PairFSISolidTL::types() const
   return reference->images.any() ? types_with_images.data() : atom->type;
 }
 
-// Also bodies that meet across a plane: i and the image of j, and what this does to j
+// Also bodies that meet across a plane: i and the image of j, and what this does to j; and those
+// that meet their own image, which each particle sees for itself
 template <int D> void PairFSISolidTL::fold_images(double part)
 {
   const Images &images = reference->images;
+  const SelfContact &self = reference->self;
   images.fold<D>(reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid[0]), part);
-  if (!list) return;
-  double **x = atom->x;
-  const int *const type = atom->type, *const mask = atom->mask;
+  const int *const mask = atom->mask;
+  const tagint *const molecule = atom->molecule;
   const double most = contact_range * disc->largest_cut;
-  for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii], near = images.planes.near(x[i], most);
-    if (!near || !images.joins(mask, i)) continue;
+  for (const auto &[i, j] : self.image_pairs)
+    meet_images<D>(i, j, most, false, part, [&, i = i](const Walls::Reflection &s) {
+      return !self.goes_on(molecule[i], s.mask);
+    });
+  for (int ii = 0; list && ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    if (!images.joins(mask, i) || !images.planes.near(atom->x[i], most)) continue;
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
-      if (atom->molecule[i] == atom->molecule[j] || !images.joins(mask, j)) continue;
-      const double reachsq = contacts[type[i] * (atom->ntypes + 1) + type[j]].reachsq;
-      double rsq = 0.0;
-      for (int d = 0; d < D; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
-      if (rsq >= reachsq) continue;
-      images.planes.images(near & images.planes.near(x[j], most), rsq, x[i], x[j], reachsq,
-                           [&](const Walls::Reflection &s, double image_rsq, const double *xij) {
-                             push_image<D>(i, j, s, image_rsq, xij, part);
-                           });
+      if (molecule[i] == molecule[j] || !images.joins(mask, j)) continue;
+      // without newton the other rank does its own
+      meet_images<D>(i, j, most, force->newton_pair || j < atom->nlocal, part,
+                     [](const Walls::Reflection &) {
+                       return true;
+                     });
     }
   }
 }
 
+// the images that count, of what is so near to planes at most
+template <int D, class Counts>
+void PairFSISolidTL::meet_images(int i, int j, double most, bool both, double part, Counts counts)
+{
+  const Walls &planes = reference->images.planes;
+  double **x = atom->x, rsq = 0.0;
+  const double reachsq = contacts[atom->type[i] * (atom->ntypes + 1) + atom->type[j]].reachsq;
+  for (int d = 0; d < D; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+  if (rsq >= reachsq) return;
+  planes.images(planes.near(x[i], most) & planes.near(x[j], most), rsq, x[i], x[j], reachsq,
+                [&](const Walls::Reflection &s, double image_rsq, const double *xij) {
+                  if (counts(s)) push_image<D>(i, j, s, image_rsq, xij, both, part);
+                });
+}
+
 template <int D>
 void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double rsq,
-                                const double *xij, double part)
+                                const double *xij, bool both, double part)
 {
   const Images &images = reference->images;
   const Contact &contact = contacts[atom->type[i] * (atom->ntypes + 1) + atom->type[j]];
   const State &si = disc->state[atom->type[i]], &sj = disc->state[atom->type[j]];
   const double Ki = si.csq * si.rho0, Kj = sj.csq * sj.rho0, f = contact(rsq, Ki, Kj);
   const Mirror mirror(images.planes, s);
-  const bool both = force->newton_pair || j < atom->nlocal;    // else the other rank does its own
   for (int d = 0; d < D; d++) {
     fsolid[i][d] += f * xij[d];
     if (both) fsolid[j][d] -= f * mirror.sign[d] * xij[d];
@@ -863,7 +897,7 @@ class PairFSISolidTL::Wet {
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
           m[a][b] = (a == b) + t / atom->rmass[i] * step.impedance[Sym<3>::id(a, b)][i];
-      if (m[0][0] + m[1][1] == 2.0) continue;    // dry
+      if (m[0][0] + m[1][1] + m[2][2] == 3.0) continue;    // dry
       MathExtra::invert3(m, p.implicit);
       all.push_back(p);
     }

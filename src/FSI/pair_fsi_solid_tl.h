@@ -128,6 +128,7 @@ class PairFSISolidTL : public PairFSI {
   double stored(int i) const;
   template <int D> double spare(int i) const;
   void make_laws();
+  void follow_law();
   // per particle, stress of rates or the law's own; or null
   const double *const *history() const;
   int nmoving = 0,
@@ -154,7 +155,9 @@ class PairFSISolidTL : public PairFSI {
   template <int D> void fold_images(double part);
   template <int D>
   void push_image(int i, int j, const FSI::Walls::Reflection &, double rsq, const double *xij,
-                  double part);
+                  bool both, double part);
+  template <int D, class Counts>
+  void meet_images(int i, int j, double most, bool both, double part, Counts);
   std::vector<int> types_with_images;
   const int *types() const;
   template <int D>

@@ -336,6 +336,20 @@ def test_what_artificial_viscosity_is_worth(tmp_path, dim, expected):
             == pytest.approx(speed * width / nu, rel=0.06))
 
 
+@pytest.mark.parametrize("held", [False, True])
+def test_hourglass_of_a_free_body(tmp_path, held):
+    """Forces of pair_style fsi/solid that turn with each particle: for bodies that are held."""
+    text = DECK.replace("fsi/solid/tl\npair", "fsi/solid hourglass 0.1 gradient quadratic\npair")
+    text = text.replace("fsi/solid/tl", "fsi/solid").replace(
+        "timestep", "fix stress all fsi/stress\ntimestep")
+    if held:
+        text = text.replace("fix sph all", "region foot block INF INF INF 0.02 INF INF units box\n"
+                            "group foot region foot\ngroup foot intersect foot plate\n"
+                            "group moving subtract all foot\nfix sph moving")
+    output = run(tmp_path, text, materials_fsi=MATERIALS.format(rho=1000, young=2e6)).output
+    assert ("body 1 has no held particles: hourglass of pair_style" in output) != held
+
+
 @pytest.mark.parametrize("change", [("timestep 4e-5", "fix dt all fsi/dt 1"),
                                     ("timestep 4e-5", "fix dt all fsi/dt 1 substeps auto")])
 def test_chosen_time_step_is_not_criticized(tmp_path, change):

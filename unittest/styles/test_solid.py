@@ -4,8 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from decks import deck, total_lagrangian
-from scenes import KERNELS, Scene, close, cloud, dam_gate, lattice, pairs, run, sum_over
+from decks import deck, physics, start, total_lagrangian
+from scenes import (KERNELS, Scene, close, cloud, dam_gate, lattice, pairs, run, sum_over,
+                    watch)
 
 RHO, E, NU = 1000.0, 1.0e5, 0.3
 MATERIAL = f"solid rho {RHO} young {E} poisson {NU}"
@@ -377,6 +378,22 @@ def test_virial_does_not_depend_on_the_place(tmp_path, hourglass, plane):
                                           re.M)[1].split(), float))
     close(virials[1], virials[0], 1e-10)
     close(virials[2], virials[0], 1e-10)
+
+
+def test_no_pressure_from_a_data_file(tmp_path):
+    """Data files hold no stress of bodies: a compressed one has no pressure either."""
+    named = {"rubber": MATERIAL}
+    kinds = {"solid_style": "fsi/solid", "solid": "gradient corrected", "dt": 2e-5}
+    text = deck("-0.2 0.3 -0.2 0.3", 0.01, named, "variable v atom -40*(x-0.05)",
+                "velocity all set v_v NULL NULL units box", "run 60", "write_data end.data",
+                watch("before.dump", 1), "run 0", boundary="f f p", body="0 0.1 0 0.06", **kinds)
+    before = run(tmp_path, text).frames("before.dump")[-1]
+    again = start(boundary="f f p") + "read_data end.data\n" + physics(
+        0.01, named, "velocity all set 0 0 0", watch("after.dump", 20), "run 20", **kinds)
+    after = run(tmp_path, again).frames("after.dump")[-1]
+    print(f"density {before['rho'].min():.1f} to {before['rho'].max():.1f}")
+    assert before["rho"].max() > 1.02 * RHO and np.all(after["rho"] == RHO)
+    assert np.abs(after.vector(("vx", "vy"))).max() < 1e-12
 
 
 def test_hourglass_that_is_off_cannot_be_adapted():

@@ -599,6 +599,27 @@ def test_part_of_a_body_is_deleted(dim, compress, tmp_path):
         assert np.isfinite(s.get("x")).all()
 
 
+@pytest.mark.parametrize("first, then, said", [
+    ("svk", "hypo", "law hypo: the shear stress of its bodies is forgotten"),
+    ("hypo", "neohookean", "law neohookean: the stress of fix fsi/stress is forgotten"),
+    ("svk", "neohookean", None), ("hypo", "hypo", None)])
+def test_another_law_between_runs(tmp_path, first, then, said):
+    """Of strains or of their rates: what was before, the other does not know. Through a restart
+    file, too."""
+    rubber = "solid rho 1000 young 1e5 poisson 0.3"
+    style = (f"fsi/material stuff {rubber}\npair_style fsi/solid/tl law {{}}\n"
+             "pair_coeff * * NULL stuff\n")
+    text = deck("-0.2 0.3 -0.2 0.3", 0.01, {"rubber": rubber},
+                "fix stress all fsi/stress", style.format(first), "run 2", "write_restart r",
+                boundary="f f p", body="0 0.1 0 0.06", dt=1e-5)
+    then = style.format(then).split("\n", 1)[1]
+    again = "read_restart r\n" + style.split("\n")[0] + "\n" + then + "".join(
+        f"fix {fix}\n" for fix in ("sph all fsi 0.01 wendland 1.5", "stress all fsi/stress"))
+    for script in (text + then, again):
+        output = run(tmp_path, script + "run 2\n").output
+        assert (said in output) if said else ("forgotten" not in output)
+
+
 def test_deleting_on_ranks(tmp_path):
     """A slice is cut out of two bodies in flight, on 1 and 4 ranks: the same motion of what is
     left."""
