@@ -360,7 +360,7 @@ void FixFSIWallParticle::end_state(bool advance)
   double **v = atom->v;
   double *rho = atom->rho;
   sum_up();
-
+  if (advance) old.resize(4 * members.size());
   for (size_t m = 0; m < members.size(); m++) {
     const int i = members[m];
     if (i >= atom->nlocal) break;    // ghosts come last
@@ -392,12 +392,19 @@ void FixFSIWallParticle::end_state(bool advance)
     } else
       rho[i] = state.density(p);
     if (advance) {
+      std::copy_n(before[i], 4, &old[4 * m]);
       std::copy_n(v[i], 3, before[i]);
       before[i][3] = 1.0;
     }
   }
   sent = to_ghosts.get();
   swaps->forward<Fix>(step->profile, this);
+}
+
+void FixFSIWallParticle::undo_advance()
+{
+  for (size_t m = 0; m < members.size() && members[m] < atom->nlocal; m++)
+    std::copy_n(&old[4 * m], 4, before[members[m]]);
 }
 
 // force of the fluid: only pairs have added to f so far
@@ -436,5 +443,5 @@ double FixFSIWallParticle::compute_scalar()
 
 double FixFSIWallParticle::memory_usage()
 {
-  return FixFields::memory_usage() + bytes_of(members);
+  return FixFields::memory_usage() + bytes_of(members) + bytes_of(old);
 }
