@@ -431,9 +431,7 @@ double FixFSIWallParticle::compute_scalar()
   double counted = 0.0;
   for (size_t level = 0; level < disc->levels.size(); level++)
     for_pairs(level, HUGE_VAL, [&](int w, int j, const double *, double rsq, const Mirror &) {
-      const double dx_w = disc->dx_of(atom->type[w]),
-                   limit = disc->state[atom->type[w]].guard *
-          ((disc->levels[level].dx + dx_w) / (disc->dx + dx_w));
+      const double limit = disc->guard_of(atom->type[w], disc->levels[level].dx);
       // without newton a pair across ranks is in the lists of both
       if (rsq < limit * limit)
         counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
