@@ -184,11 +184,27 @@ void Check::held_parts() const
     }
 }
 
-// Another integrator of what fix fsi moves: it would move twice in a step.
+static bool moves_as_a_whole(const Fix *fix)
+{
+  for (const char *style : {"^rigid", "^poems", "^move", "^python/move", "^nve/noforce"})
+    if (utils::strmatch(fix->style, style)) return true;
+  return false;
+}
+
+// Another integrator of what fix fsi moves: it would move twice in a step. One of a wall that does
+// not move it as a whole: nothing holds its particles together
 void Check::integrators() const
 {
   for (const auto &fix : modify->get_fix_list()) {
     if (!fix->time_integrate || utils::strmatch(fix->style, "^fsi")) continue;
+    const auto apart = find_particles(atom, world, [&](int i) {
+      return disc.state[atom->type[i]].species == RIGID && atom->mask[i] & fix->groupbit;
+    });
+    if (apart.count && !moves_as_a_whole(fix))
+      error->all(FLERR,
+                 "Fix {} (style {}) would take each of {} wall particles, the first of them atom "
+                 "{}, its own way: move walls with fix fsi/move or fix rigid",
+                 fix->id, fix->style, apart.count, apart.first);
     const auto twice = find_particles(atom, world, [&](int i) {
       return atom->mask[i] & disc.mover->groupbit && atom->mask[i] & fix->groupbit;
     });
