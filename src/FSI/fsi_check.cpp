@@ -148,14 +148,53 @@ void Check::compare_densities()
     if (disc.state[t].species != NONE) densities[t] = disc.state[t].rho0;
 }
 
+// A particle has the volume of its cell, or one that fsi/set gave. A mass by a command of LAMMPS,
+// or that of another type, may be that of no material.
+void Check::compare_masses()
+{
+  constexpr double FACTOR = 1.8, ROUND = 1.0 + 1.0e-9;    // levels: half the volume
+  masses.resize(2 * (atom->ntypes + 1), -OFF);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int t = atom->type[i];
+    const State &s = disc.state[t];
+    const double m = atom->rmass[i], cell = std::pow(disc.dx_of(t), disc.dim);
+    if (s.species == NONE) continue;
+    const auto fits = [=](double rho) {
+      return m < FACTOR * rho * cell && m * FACTOR > rho * cell;
+    };
+    const bool known = m <= ROUND * masses[2 * t] && -m * ROUND <= masses[2 * t + 1];
+    if (fits(s.rho0) || (s.species == FLUID && fits(atom->rho[i])) || known || !std::isfinite(m))
+      continue;
+    error->one(FLERR,
+               "Atom {} of type {} has the mass {:g}, a volume of {:g} with its material, but its "
+               "cell has {:g}: expected materials and types as they were when masses were made, or "
+               "other volumes by fsi/set volume",
+               atom->tag[i], t, m, m / s.rho0, cell);
+  }
+  know_masses();
+}
+
+void Check::know_masses()
+{
+  masses.assign(2 * (atom->ntypes + 1), -OFF);
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *const of_type = &masses[2 * atom->type[i]];
+    of_type[0] = std::max(of_type[0], atom->rmass[i]);
+    of_type[1] = std::max(of_type[1], -atom->rmass[i]);
+  }
+  masses = over_ranks(masses, MPI_MAX, world);
+}
+
 void Check::write(Record &record) const
 {
   record.add("densities", densities);
+  record.add("masses", masses);
 }
 
 void Check::read(const Record &record)
 {
   if (record.has("densities")) densities = record.numbers("densities");
+  if (record.has("masses")) masses = record.numbers("masses");
 }
 
 // A part of a body that has a velocity, but that nothing moves, strains the rest of it for ever.
@@ -307,6 +346,7 @@ void Check::init()
 
 void Check::setup()
 {
+  compare_masses();    // after all that know more of some
   look(true, 0.0);
   judge(Stop::START);
 }

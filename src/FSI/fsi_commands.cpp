@@ -21,6 +21,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
 #include "fsi_cells.h"
+#include "fsi_check.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
@@ -338,7 +339,7 @@ static bool set_density(const LAMMPS *lmp, int i, int what, const std::string &n
   }
   if (!(rho > 0.0 && rho < Range::LARGEST))
     lmp->error->one(FLERR, "Fsi/set {} {} must be > 0",
-                    what == DENSITY ? "density" : name + ": density", rho);
+                    what == Given::DENSITY ? "density" : name + ": density", rho);
   atom->rmass[i] *= rho / atom->rho[i];
   atom->rho[i] = rho;
   return true;
@@ -352,7 +353,7 @@ void FSISet::command(int narg, char **arg)
   int what;
   Keywords keywords(lmp, "fsi/set");
   keywords.argument("group-ID").word(group_name, "");
-  keywords.argument("keyword").choice(what, DENSITY, names);
+  keywords.argument("keyword").choice(what, Given::DENSITY, names);
   keywords.argument("value").word(given, "");
   keywords.parse(narg, arg);
   const int igroup = group_of(lmp, "Fsi/set", group_name);
@@ -385,10 +386,15 @@ void FSISet::command(int narg, char **arg)
     if (!(atom->mask[i] & group->bitmask[igroup])) continue;
     if (what == VOLUME && !(each[i] > 0.0))
       error->one(FLERR, "Fsi/set volume {} must be > 0", each[i]);
-    if (what == VOLUME) atom->rmass[i] = atom->rho[i] * each[i];
+    if (what == VOLUME) {
+      // the density of a wall is that of the pressure on it
+      const State &s = fix_fsi->disc.state[atom->type[i]];
+      atom->rmass[i] = (s.species == RIGID ? s.rho0 : atom->rho[i]) * each[i];
+    }
     count += what == VOLUME ||
         set_density(lmp, i, what, names[what], each[i], fix_fsi->disc.state[atom->type[i]], forces);
   }
+  if (what == VOLUME) fix_fsi->check.know_masses();
   const bigint all = count_of(count, world);
   if (all == 0 && comm->me == 0)
     error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", group_name, names[what], given);
