@@ -18,9 +18,11 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_part.h"
+#include "group.h"
 #include "math_extra.h"
 #include "neighbor.h"
 #include "update.h"
@@ -46,6 +48,15 @@ void ComputeFSIForce::init()
   disc = &FixFSI::find(lmp, "Compute fsi/force")->disc;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
+}
+
+void ComputeFSIForce::find_idle(const Census &, const Idle &nothing) const
+{
+  if (find_particles(atom, world, [this](int i) {
+        return counts(i);
+      }).count == 0)
+    nothing("Compute fsi/force",
+            fmt::format("group {} has no solid and no wall", group->names[igroup]));
 }
 
 bool ComputeFSIForce::counts(int i) const

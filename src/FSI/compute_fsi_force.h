@@ -21,6 +21,7 @@ ComputeStyle(fsi/force,ComputeFSIForce);
 #define LMP_COMPUTE_FSI_FORCE_H
 
 #include "compute.h"
+#include "fsi_part.h"
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -29,11 +30,12 @@ namespace FSI {
 
 // Force and torque that pair_style fsi/fluid gives to the solid and wall particles of a group.
 
-class ComputeFSIForce : public Compute {
+class ComputeFSIForce : public Compute, public FSI::Part {
  public:
   ComputeFSIForce(class LAMMPS *, int, char **);
   ~ComputeFSIForce() override { delete[] vector; }
   void init() override;
+  void find_idle(const Census &, const Idle &) const override;
   void compute_vector() override;
 
   // adds the forces in atom->f with this sign: -1 before the loop of pair_style fsi/fluid, +1 after

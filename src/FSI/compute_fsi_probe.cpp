@@ -174,6 +174,16 @@ void ComputeFSIProbe::init()
   }
 }
 
+// of a scene that has fluid: other may be poured later
+void ComputeFSIProbe::find_idle(const Census &all, const Idle &nothing) const
+{
+  if (all.fluids > 0 && !of_body(quantity[0]) && find_particles(atom, world, [this](int i) {
+                                                   return atom->mask[i] & groupbit &&
+                                                       disc->state[atom->type[i]].species == FLUID;
+                                                 }).count == 0)
+    nothing("Compute fsi/probe", fmt::format("group {} has no fluid", group->names[igroup]));
+}
+
 void ComputeFSIProbe::set_arrays(int i)
 {
   for (const auto &place : places) std::fill_n(place.kept->astore[i], 4, 0.0);

@@ -21,6 +21,7 @@ ComputeStyle(fsi/probe,ComputeFSIProbe);
 #define LMP_COMPUTE_FSI_PROBE_H
 
 #include "compute.h"
+#include "fsi_part.h"
 
 #include <string>
 #include <vector>
@@ -36,11 +37,12 @@ namespace FSI {
 // Each rank sums over its own particles, a reduction does the rest; particles near a place are
 // listed as seldom as neighbors are. Displacements are those of points of solids, by linear fits.
 
-class ComputeFSIProbe : public Compute {
+class ComputeFSIProbe : public Compute, public FSI::Part {
  public:
   ComputeFSIProbe(class LAMMPS *, int, char **);
   ~ComputeFSIProbe() override;
   void init() override;
+  void find_idle(const Census &, const Idle &) const override;
   void setup() override;
   void set_arrays(int i) override;
   double compute_scalar() override;

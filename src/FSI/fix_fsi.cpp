@@ -266,6 +266,7 @@ void FixFSI::find_parts()
   for (auto *p : fixes_of<Part>(lmp)) parts.push_back(p);
   parts.push_back(&members->surface_deficit);
   parts.push_back(&members->clamps);
+  parts.push_back(&ledger);
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
   });
@@ -359,6 +360,7 @@ void FixFSI::update_state(bool advance)
   step.inverted = -1;
   step.behind = advance ? 0.5 * update->dt : 0.0;
   ledger.set_tally(advance ? update->dt : 0.0);
+  if (advance) ledger.follow_exchange();
   step.body_forces.evaluate(disc.state);
   if (ledger.kept && advance)
     ledger.energy_out[Ledger::FIELDS] += step.body_forces.work(disc.state, groupbit);

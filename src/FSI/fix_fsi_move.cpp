@@ -42,8 +42,8 @@ static constexpr double FREE = HUGE_VAL;    // stands for NULL
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg, "fix fsi/move"), rate{}, point{}, axis{}, omega(0.0), driven{},
-    given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), last{},
-    origin(Clock::now(update)), original(nullptr), begun(false)
+    given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), origin(Clock::now(update)),
+    original(nullptr), begun(false)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/move", error);
   const auto found = std::find(MOTIONS.begin(), MOTIONS.end(), arg[3]);
@@ -180,27 +180,20 @@ void FixFSIMove::setup_pre_exchange()
   move(START);
 }
 
-// Commands between runs may have moved particles: their motion goes on from there. A variable that
-// is not 0 at its start, or that a command has changed, moves them in the first step, though.
+// The motion goes on from there, whatever variables are when it begins, and wherever commands
+// between runs have put particles
 void FixFSIMove::go_on_from_here()
 {
   constexpr double ROUND = 1.0e-6;
   const double round = ROUND * FixFSI::find(lmp, "Fix fsi/move")->disc.dx,
                t = Clock::now(update) - origin;
-  if (motion == VARIABLE && (evaluated < 0 || given->of_atoms()))
-    given->evaluate(igroup, 0, 2 * VELOCITY);
-  if (evaluated < 0) remember();
+  if (motion == VARIABLE) given->evaluate(igroup, 0, 2 * VELOCITY);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     double to[3], v[3], off[3] = {};
     where(i, t, to, v);
-    for (int k = 0; k < domain->dimension; k++) {
-      if (t == 0.0)
-        to[k] = original[i][k];
-      else if (given->source(k) == Values::EQUAL)
-        to[k] = original[i][k] + last[k];
+    for (int k = 0; k < domain->dimension; k++)
       if (driven[k]) off[k] = atom->x[i][k] - to[k];
-    }
     to_nearest_image(*domain, off);
     if (MathExtra::lensq3(off) <= round * round) continue;
     for (int k = 0; k < 3; k++) original[i][k] += off[k];
@@ -208,11 +201,6 @@ void FixFSIMove::go_on_from_here()
     domain->unmap(atom->x[i], atom->image[i], original[i]);
     turn_back(original[i], t);
   }
-}
-
-void FixFSIMove::remember()
-{
-  for (int k = 0; k < 3; k++) last[k] = given->number(k);
 }
 
 void FixFSIMove::initial_integrate(int)
@@ -317,7 +305,6 @@ void FixFSIMove::move(When when)
     given->evaluate(igroup, 0, 2 * VELOCITY);
     update->atime = clock;
     if (back == 0.0) evaluated = update->ntimestep;
-    if (when == END) remember();
   }
   double **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {

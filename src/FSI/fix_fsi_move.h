@@ -67,9 +67,8 @@ class FixFSIMove : public FSI::FixFields, public FSI::Part {
   static constexpr int VELOCITY = 3;
   const std::unique_ptr<FSI::Values> given;
   bigint evaluated;     // the last step at whose end they are known
-  double last[3];       // displacements by equal-style ones at the end of the last step
   double origin;        // time at which particles were at
-  double **original;    // these positions, not wrapped
+  double **original;    // these positions, not wrapped; less what variables were then
   bool begun;           // the motion, in the setup of a run
 
   enum When { START, MIDDLE, END, BACK };    // of a run; of a step, from its middle to its start
@@ -83,7 +82,6 @@ class FixFSIMove : public FSI::FixFields, public FSI::Part {
   void follow(const double *from, double t, double *x, double *v) const;
   void where(int i, double t, double *x, double *v) const;
   void go_on_from_here();
-  void remember();    // displacements that the variables have now
   void turn_back(double *x, double t) const;
   void move(When);
 };

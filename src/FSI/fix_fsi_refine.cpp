@@ -521,22 +521,13 @@ void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells 
 void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
 {
   static constexpr int PASSES = 3;    // the next wall particle may be as near
-  const double *const x = atom->x[two.i], dx = disc->dx,
-                      fine = disc->dx_of(types[level(two.i) + 1]);
+  const double *const x = atom->x[two.i], fine = disc->dx_of(types[level(two.i) + 1]);
   for (int pass = 0; pass < 2 * PASSES; pass++) {
     const double to = pass % 2 ? 1.0 : -1.0;
-    double at[3], away[3] = {}, deepest = 0.0;
+    double at[3];
     for (int d = 0; d < 3; d++) at[d] = x[d] + two.off[d] + to * two.dx[d];
-    cells.around(at, [&](int j, double rsq) {
-      const int t = atom->type[j];
-      const double dx_j = disc->dx_of(t), r = std::sqrt(rsq),
-                   depth = disc->state[t].guard * (fine + dx_j) / (dx + dx_j) - r;
-      if (depth <= 0.0 || r == 0.0) return;
-      deepest = std::max(deepest, depth);
-      for (int d = 0; d < disc->dim; d++) away[d] += depth / r * (at[d] - atom->x[j][d]);
-    });
-    const double length = MathExtra::len3(away);
-    for (int d = 0; d < 3 && length > 0.0; d++) two.off[d] += deepest / length * away[d];
+    const auto away = disc->out_of_guards(atom, cells, fine, at);
+    for (int d = 0; d < 3; d++) two.off[d] += away[d];
   }
 }
 

@@ -102,7 +102,13 @@ void FixFSIReport::begin()
   momentum = momentum_of_moving();
   fields.clear();
   for (const auto &field : step->body_forces.all)
-    if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
+    if (field.mask) {
+      double moved = 0.0;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (atom->mask[i] & field.mask && atom->mask[i] & disc->mover->groupbit)
+          moved += atom->rmass[i];
+      fields.push_back({field.g, sum_of(moved, world)});
+    }
   any_held = group->count(0) > group->count(disc->mover->igroup);
   listed = -1;
   if (energy) {
@@ -118,10 +124,42 @@ bigint FixFSIReport::particles() const
   return count_of(atom->nlocal, world) - population->net;
 }
 
+// Of the first n atoms, local and ghost
+FixFSIReport::Vector FixFSIReport::force_on_held(int n) const
+{
+  Vector sum{};
+  for (const int i : held) {
+    if (i >= n) break;
+    for (int d = 0; d < disc->dim; d++) sum[d] += atom->f[i][d];
+  }
+  return sum;
+}
+
+// What moves has the opposite of what pairs do to the held, not of what fixes do: before those,
+// where ghosts still have their part
+void FixFSIReport::pre_reverse(int, int)
+{
+  if (!any_held) return;
+  if (listed != neighbor->lastcall) {
+    listed = neighbor->lastcall;
+    held.clear();
+    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+      if (!(atom->mask[i] & disc->mover->groupbit)) held.push_back(i);
+  }
+  of_fixes = force_on_held(atom->nlocal + (force->newton_pair ? atom->nghost : 0));
+}
+
+void FixFSIReport::prescribe()
+{
+  if (!any_held) return;
+  if (step->device) step->device->to_host();
+  const Vector now = force_on_held(atom->nlocal);
+  for (int d = 0; d < 3; d++) of_fixes[d] = now[d] - of_fixes[d];
+}
+
 // this rank's impulses of this step
 void FixFSIReport::end_of_step()
 {
-  const int dim = disc->dim;
   const double dtf = update->dt * force->ftm2v;
   for (const auto &field : fields)
     for (int d = 0; d < 3 && comm->me == 0; d++)
@@ -130,16 +168,8 @@ void FixFSIReport::end_of_step()
     for (const auto &f : mirror->force_on)
       for (int d = 0; d < 3; d++) impulse[WALLS][d] -= dtf * f[d];
   if (!any_held) return;
-  if (listed != neighbor->lastcall) {
-    listed = neighbor->lastcall;
-    held.clear();
-    for (int i = 0; i < atom->nlocal; i++)
-      if (!(atom->mask[i] & disc->mover->groupbit)) held.push_back(i);
-  }
-  Vector sum{};
-  for (const int i : held)
-    for (int d = 0; d < dim; d++) sum[d] += atom->f[i][d];
-  for (int d = 0; d < dim; d++) impulse[HELD][d] -= dtf * sum[d];
+  const Vector sum = force_on_held(atom->nlocal);
+  for (int d = 0; d < 3; d++) impulse[HELD][d] -= dtf * (sum[d] - of_fixes[d]);
 }
 
 FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
@@ -341,7 +371,10 @@ std::string FixFSIReport::momentum_table(bool lost)
   std::string others = lost ? " lost particles," : "";
   if (has_open_ends(lmp)) others += " flow through open ends,";
   for (auto &fix : modify->get_fix_list())
-    if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^gravity"))
+    if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^gravity") &&
+        find_particles(atom, world, [&](int i) {
+          return atom->mask[i] & fix->groupbit && atom->mask[i] & disc->mover->groupbit;
+        }).count)
       others += fmt::format(" fix {},", fix->id);
   std::string text = fmt::format("  {:<46} {:>12} {:>12}{}\n", "momentum", "x", "y",
                                  disc->dim == 3 ? fmt::format(" {:>12}", "z") : "");

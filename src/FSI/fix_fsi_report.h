@@ -40,9 +40,11 @@ class FixFSIReport : public Fix, public FSI::Part {
  public:
   FixFSIReport(class LAMMPS *, int, char **);
   ~FixFSIReport() override;
-  int setmask() override { return FixConst::END_OF_STEP; }
+  int setmask() override { return FixConst::PRE_REVERSE | FixConst::END_OF_STEP; }
   void init() override;
   void setup(int) override { begin(); }
+  void pre_reverse(int, int) override;
+  void prescribe() override;
   void end_of_step() override;
   void post_run() override;
   double compute_vector(int) override;
@@ -63,12 +65,13 @@ class FixFSIReport : public Fix, public FSI::Part {
   double first_time = 0.0;
   struct Gravity {
     const double *g;
-    double mass;    // of its group, all ranks
+    double mass;    // that it moves, all ranks
   };
   std::vector<Gravity> fields;
   bool any_held = false;
-  std::vector<int> held;         // local atoms that fix fsi does not integrate, as of
+  std::vector<int> held;         // atoms that fix fsi does not integrate, local ones first, as of
   bigint listed = -1;            // this build of the neighbor lists
+  Vector of_fixes = {};          // what fixes add to the forces on them in this step
   Vector momentum = {};          // at the start, of all ranks
   Impulses impulse = {};         // of this rank
   std::vector<double> ledger;    // at the start
@@ -77,6 +80,7 @@ class FixFSIReport : public Fix, public FSI::Part {
 
   void begin();
   bigint particles() const;
+  Vector force_on_held(int n) const;
   Vector momentum_of_moving(double *scale = nullptr) const;
   struct Balance {
     Vector change, rest;

@@ -360,7 +360,7 @@ void FixFSIWallParticle::end_state(bool advance)
   double **v = atom->v;
   double *rho = atom->rho;
   sum_up();
-
+  if (advance) old.resize(4 * members.size());
   for (size_t m = 0; m < members.size(); m++) {
     const int i = members[m];
     if (i >= atom->nlocal) break;    // ghosts come last
@@ -392,12 +392,19 @@ void FixFSIWallParticle::end_state(bool advance)
     } else
       rho[i] = state.density(p);
     if (advance) {
+      std::copy_n(before[i], 4, &old[4 * m]);
       std::copy_n(v[i], 3, before[i]);
       before[i][3] = 1.0;
     }
   }
   sent = to_ghosts.get();
   swaps->forward<Fix>(step->profile, this);
+}
+
+void FixFSIWallParticle::undo_advance()
+{
+  for (size_t m = 0; m < members.size() && members[m] < atom->nlocal; m++)
+    std::copy_n(&old[4 * m], 4, before[members[m]]);
 }
 
 // force of the fluid: only pairs have added to f so far
@@ -424,9 +431,7 @@ double FixFSIWallParticle::compute_scalar()
   double counted = 0.0;
   for (size_t level = 0; level < disc->levels.size(); level++)
     for_pairs(level, HUGE_VAL, [&](int w, int j, const double *, double rsq, const Mirror &) {
-      const double dx_w = disc->dx_of(atom->type[w]),
-                   limit = disc->state[atom->type[w]].guard *
-          ((disc->levels[level].dx + dx_w) / (disc->dx + dx_w));
+      const double limit = disc->guard_of(atom->type[w], disc->levels[level].dx);
       // without newton a pair across ranks is in the lists of both
       if (rsq < limit * limit)
         counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
@@ -436,5 +441,5 @@ double FixFSIWallParticle::compute_scalar()
 
 double FixFSIWallParticle::memory_usage()
 {
-  return FixFields::memory_usage() + bytes_of(members);
+  return FixFields::memory_usage() + bytes_of(members) + bytes_of(old);
 }

@@ -53,6 +53,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   void set_fields(FSI::Discretization &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at
                                             // which forces are computed
+  void undo_advance() override;
 
  private:
   double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0:
@@ -62,6 +63,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   bool mixed = false;            // several fluids differ in it: each wall particle has a mean
   std::vector<class FixFSIMove *> movers;
   double **before = nullptr;    // velocity at the last step, and whether there was one
+  std::vector<double> old;      // the same of members at the start of this one
   double **at_end = nullptr;    // velocity at the end of a run
   void follow_commands();
   const FSI::Discretization *disc = nullptr;

@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fsi_check.h"
 #include "fsi_find.h"
+#include "fsi_gather.h"
 #include "fsi_hub.h"
 #include "fsi_keywords.h"
 #include "fsi_rows.h"
@@ -94,8 +95,14 @@ void FixFSIWatch::init()
 
 void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
 {
-  if (group->count(igroup) == 0)
-    nothing("Fix fsi/watch", fmt::format("group {} is empty", group->names[igroup]));
+  // of walls there are distances alone
+  const auto watched = find_particles(atom, world, [this](int i) {
+    const int species = disc->state[atom->type[i]].species;
+    return atom->mask[i] & groupbit && (species == FLUID || species == SOLID);
+  });
+  if (watched.count == 0 && rows[NEAREST].limit <= 0.0)
+    nothing("Fix fsi/watch",
+            fmt::format("group {} has no fluid and no solid", group->names[igroup]));
 }
 
 void FixFSIWatch::setup(int)

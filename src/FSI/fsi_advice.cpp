@@ -925,7 +925,9 @@ static void warn_idle(const Census &c)
   const auto nothing = [&](const std::string &what, const std::string &why) {
     if (c.comm->me == 0) c.error->warning(FLERR, what + " has nothing to act on: " + why);
   };
-  for (const auto *p : c.parts) p->find_idle({c.found[FLUIDS].count, solids}, nothing);
+  auto parts = c.parts;
+  for (auto *p : computes_of<Part>(c.lmp)) parts.push_back(p);
+  for (const auto *p : parts) p->find_idle({c.found[FLUIDS].count, solids}, nothing);
   if (c.substeps > 1 && solids == 0) nothing("Fix fsi substeps", "no particle is a solid");
   if (c.disc.article) return;
   if (c.disc.density_fluid != Discretization::CONTINUITY && !c.fluids.style)

@@ -150,14 +150,53 @@ void Check::compare_densities()
     if (disc.state[t].species != NONE) densities[t] = disc.state[t].rho0;
 }
 
+// A particle has the volume of its cell, or one that fsi/set gave. A mass by a command of LAMMPS,
+// or that of another type, may be that of no material.
+void Check::compare_masses()
+{
+  constexpr double FACTOR = 1.8, ROUND = 1.0 + 1.0e-9;    // levels: half the volume
+  masses.resize(2 * (atom->ntypes + 1), -OFF);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int t = atom->type[i];
+    const State &s = disc.state[t];
+    const double m = atom->rmass[i], cell = std::pow(disc.dx_of(t), disc.dim);
+    if (s.species == NONE) continue;
+    const auto fits = [=](double rho) {
+      return m < FACTOR * rho * cell && m * FACTOR > rho * cell;
+    };
+    const bool known = m <= ROUND * masses[2 * t] && -m * ROUND <= masses[2 * t + 1];
+    if (fits(s.rho0) || (s.species == FLUID && fits(atom->rho[i])) || known || !std::isfinite(m))
+      continue;
+    error->one(FLERR,
+               "Atom {} of type {} has the mass {:g}, a volume of {:g} with its material, but its "
+               "cell has {:g}: expected materials and types as they were when masses were made, or "
+               "other volumes by fsi/set volume",
+               atom->tag[i], t, m, m / s.rho0, cell);
+  }
+  know_masses();
+}
+
+void Check::know_masses()
+{
+  masses.assign(2 * (atom->ntypes + 1), -OFF);
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *const of_type = &masses[2 * atom->type[i]];
+    of_type[0] = std::max(of_type[0], atom->rmass[i]);
+    of_type[1] = std::max(of_type[1], -atom->rmass[i]);
+  }
+  masses = over_ranks(masses, MPI_MAX, world);
+}
+
 void Check::write(Record &record) const
 {
   record.add("densities", densities);
+  record.add("masses", masses);
 }
 
 void Check::read(const Record &record)
 {
   if (record.has("densities")) densities = record.numbers("densities");
+  if (record.has("masses")) masses = record.numbers("masses");
 }
 
 // A part of a body that has a velocity, but that nothing moves, strains the rest of it for ever.
@@ -186,11 +225,27 @@ void Check::held_parts() const
     }
 }
 
-// Another integrator of what fix fsi moves: it would move twice in a step.
+static bool moves_as_a_whole(const Fix *fix)
+{
+  for (const char *style : {"^rigid", "^poems", "^move", "^python/move", "^nve/noforce"})
+    if (utils::strmatch(fix->style, style)) return true;
+  return false;
+}
+
+// Another integrator of what fix fsi moves: it would move twice in a step. One of a wall that does
+// not move it as a whole: nothing holds its particles together
 void Check::integrators() const
 {
   for (const auto &fix : modify->get_fix_list()) {
     if (!fix->time_integrate || utils::strmatch(fix->style, "^fsi")) continue;
+    const auto apart = find_particles(atom, world, [&](int i) {
+      return disc.state[atom->type[i]].species == RIGID && atom->mask[i] & fix->groupbit;
+    });
+    if (apart.count && !moves_as_a_whole(fix))
+      error->all(FLERR,
+                 "Fix {} (style {}) would take each of {} wall particles, the first of them atom "
+                 "{}, its own way: move walls with fix fsi/move or fix rigid",
+                 fix->id, fix->style, apart.count, apart.first);
     const auto twice = find_particles(atom, world, [&](int i) {
       return atom->mask[i] & disc.mover->groupbit && atom->mask[i] & fix->groupbit;
     });
@@ -293,6 +348,7 @@ void Check::init()
 
 void Check::setup()
 {
+  compare_masses();    // after all that know more of some
   look(true, 0.0);
   judge(Stop::START);
 }

@@ -87,7 +87,8 @@ class Check : protected Pointers {
   Check(class LAMMPS *, const Discretization &, const StepState &, const std::vector<Part *> &);
   void before_init();            // what no run may have
   void materials();              // every atom has one, of the density that its mass was made for
-  void write(Record &) const;    // these densities
+  void know_masses();            // those that there are are meant
+  void write(Record &) const;    // these densities and masses
   void read(const Record &);
   void init();           // of a run: what a restart file or a script has put there
   void setup();          // after the first forces
@@ -101,6 +102,7 @@ class Check : protected Pointers {
   const StepState &step;
   Stop stop;
   std::vector<double> densities;    // per type, in the last run; 0: not known
+  std::vector<double> masses;       // per type, in the last run: the most, and the negative least
   std::vector<double> limit_sq;     // per type: of the speed
   // components of velocities and of their change in a step from which no limit is in reach
   double calm_speed = 0.0, calm_kick = 0.0;
@@ -118,6 +120,7 @@ class Check : protected Pointers {
   void spacings() const;
   void fluid_spacings(double dx, int type) const;
   void compare_densities();
+  void compare_masses();
   void held_parts() const;
   void integrators() const;
   void thin_bodies() const;

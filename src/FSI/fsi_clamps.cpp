@@ -14,6 +14,7 @@
 #include "fsi_clamps.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
@@ -55,7 +56,15 @@ void Clamps::find()
     const auto expected = expected_of(*rigid);
     if (in_substeps && !expected.empty())
       refuse(error, Refused::RIGID_STYLES, fix->id, fix->style, expected);
-    if (ids.empty() || !expected.empty()) continue;
+    if (ids.empty()) continue;
+    if (!expected.empty()) {
+      if (update->whichflag && comm->me == 0)
+        error->warning(FLERR,
+                       "Fix {} (style {}) leads the fluid by half a step, a first-order error: "
+                       "expected {}",
+                       fix->id, fix->style, expected);
+      continue;
+    }
     refuse_new_ids(*rigid);
     fixes.push_back(rigid);
     elastic = elastic || in_substeps;
@@ -89,7 +98,7 @@ std::string Clamps::expected_of(const RigidBodies &rigid) const
 {
   const auto &all = modify->get_fix_list();
   if (std::find(all.begin(), all.end(), rigid.fix) < std::find(all.begin(), all.end(), disc.mover))
-    return fmt::format("after fix {}, whose sub-steps find the forces on them", disc.mover->id);
+    return fmt::format("after fix {}, which finds the forces on them", disc.mover->id);
   if (rigid.is_thermal()) return "no keyword langevin, or fix rigid";
   if (rigid.is_early())
     return fmt::format("bodyforces late in fix_modify, since fix {} finds the forces on them later",

@@ -21,6 +21,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
 #include "fsi_cells.h"
+#include "fsi_check.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_hub.h"
@@ -29,6 +30,7 @@
 #include "fsi_refusals.h"
 #include "group.h"
 #include "input.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "update.h"
 #include "variable.h"
@@ -165,11 +167,40 @@ static std::vector<double> find_covered(const LAMMPS *lmp, const Discretization 
   return key;
 }
 
+// What stays within the guard of a wall would be shot off: it moves out, if it can. How many do
+template <class Stays, class IsBody>
+static bigint keep_off_guards(LAMMPS *lmp, const Discretization &disc, const StepState &step,
+                              Stays stays, IsBody is_body)
+{
+  constexpr int PASSES = 10;    // the next wall particle may be as near
+  Atom *const atom = lmp->atom;
+  const Cells bodies(atom, disc.dim, disc.largest_cut, is_body);
+  bigint moved = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!stays(i)) continue;
+    double at[3];
+    std::copy_n(atom->x[i], 3, at);
+    bool within = false;
+    for (int pass = 0; pass < PASSES; pass++) {
+      const auto away = disc.out_of_guards(atom, bodies, disc.dx_of(atom->type[i]), at);
+      within = within || MathExtra::len3(away.data()) > 0.0;
+      for (int d = 0; d < 3; d++) at[d] += away[d];
+    }
+    if (!within || !step.walls.is_before_planes(at)) continue;
+    std::copy_n(at, 3, atom->x[i]);
+    moved++;
+  }
+  return count_of(moved, lmp->world);
+}
+
 void FSIDisplace::command(int narg, char **arg)
 {
   std::string names[2];
   int bit[2];
   const Discretization &disc = prepare(lmp, "displace", "fluid", "body", narg, arg, names, bit);
+  StepState *step;
+  FixFSI::find(lmp, "Fsi/displace")->link(step);
+  step->gather_walls(lmp);
   const int *const type = atom->type, *const mask = atom->mask;
   const auto is_fluid = [&](int i) {
     return mask[i] & bit[0] && disc.state[type[i]].species == FLUID;
@@ -199,10 +230,17 @@ void FSIDisplace::command(int narg, char **arg)
       here[2] += atom->rmass[i];
     }
   MPI_Allreduce(here, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  const bigint moved = keep_off_guards(
+      lmp, disc, *step,
+      [&](int i) {
+        return is_fluid(i) && key[i] >= limit;
+      },
+      is_body);
   if (comm->me == 0)
-    utils::logmesg(
-        lmp, "  fsi/displace: {} is in the place of {:.6g} of {}, {} particles of {:.6g} go\n",
-        names[1], all[1], names[0], all[0], all[2]);
+    utils::logmesg(lmp,
+                   "  fsi/displace: {} is in the place of {:.6g} of {}, {} particles of {:.6g} go, "
+                   "{} move out of the guard of walls\n",
+                   names[1], all[1], names[0], all[0], all[2], moved);
   if (all[0] == 0.0 && comm->me == 0)
     error->warning(FLERR, "Fsi/displace {} {}: the body is in no fluid", names[0], names[1]);
   input->one(fmt::format("delete_atoms group {} compress no", gone));
@@ -280,7 +318,7 @@ void FSIMaterial::command(int narg, char **arg)
 
 // fsi/set (its arguments: fsi_set.rst). The mass follows the density, so that a particle keeps the
 // volume of its place in the lattice: else still water settles off (doc/notes/fluid.md, Density)
-enum { DENSITY, PRESSURE, HYDROSTATIC, VOLUME };
+enum Given { DENSITY, PRESSURE, HYDROSTATIC, VOLUME };
 
 // whether it has been set
 static bool set_density(const LAMMPS *lmp, int i, int what, const std::string &name, double value,
@@ -301,7 +339,7 @@ static bool set_density(const LAMMPS *lmp, int i, int what, const std::string &n
   }
   if (!(rho > 0.0 && rho < Range::LARGEST))
     lmp->error->one(FLERR, "Fsi/set {} {} must be > 0",
-                    what == DENSITY ? "density" : name + ": density", rho);
+                    what == Given::DENSITY ? "density" : name + ": density", rho);
   atom->rmass[i] *= rho / atom->rho[i];
   atom->rho[i] = rho;
   return true;
@@ -315,7 +353,7 @@ void FSISet::command(int narg, char **arg)
   int what;
   Keywords keywords(lmp, "fsi/set");
   keywords.argument("group-ID").word(group_name, "");
-  keywords.argument("keyword").choice(what, DENSITY, names);
+  keywords.argument("keyword").choice(what, Given::DENSITY, names);
   keywords.argument("value").word(given, "");
   keywords.parse(narg, arg);
   const int igroup = group_of(lmp, "Fsi/set", group_name);
@@ -348,10 +386,15 @@ void FSISet::command(int narg, char **arg)
     if (!(atom->mask[i] & group->bitmask[igroup])) continue;
     if (what == VOLUME && !(each[i] > 0.0))
       error->one(FLERR, "Fsi/set volume {} must be > 0", each[i]);
-    if (what == VOLUME) atom->rmass[i] = atom->rho[i] * each[i];
+    if (what == VOLUME) {
+      // the density of a wall is that of the pressure on it
+      const State &s = fix_fsi->disc.state[atom->type[i]];
+      atom->rmass[i] = (s.species == RIGID ? s.rho0 : atom->rho[i]) * each[i];
+    }
     count += what == VOLUME ||
         set_density(lmp, i, what, names[what], each[i], fix_fsi->disc.state[atom->type[i]], forces);
   }
+  if (what == VOLUME) fix_fsi->check.know_masses();
   const bigint all = count_of(count, world);
   if (all == 0 && comm->me == 0)
     error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", group_name, names[what], given);

@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_gravity.h"
+#include "fsi_cells.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
@@ -28,6 +29,7 @@
 #include "fsi_record.h"
 #include "lammps.h"
 #include "math_const.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -227,6 +229,23 @@ double FSI::pressure_of(int i, const Atom *atom, const Discretization &disc, con
 double FSI::stored(int i, const Atom *atom, const Discretization &disc)
 {
   return atom->rmass[i] * disc.state[atom->type[i]].energy(atom->rho[i]);
+}
+
+// As far as the deepest guard is deep, along the sum of the ways out of all
+std::array<double, 3> Discretization::out_of_guards(const Atom *atom, const Cells &cells,
+                                                    double spacing, const double *at) const
+{
+  std::array<double, 3> away = {};
+  double deepest = 0.0;
+  cells.around(at, [&](int j, double rsq) {
+    const double r = std::sqrt(rsq), depth = guard_of(atom->type[j], spacing) - r;
+    if (depth <= 0.0 || r == 0.0) return;
+    deepest = std::max(deepest, depth);
+    for (int d = 0; d < dim; d++) away[d] += depth / r * (at[d] - atom->x[j][d]);
+  });
+  const double length = MathExtra::len3(away.data());
+  for (double &a : away) a *= length > 0.0 ? deepest / length : 0.0;
+  return away;
 }
 
 void FSI::set_density(int i, double rho, Atom *atom, const Discretization &disc, Ledger &ledger,

@@ -20,6 +20,7 @@
 
 #include "fix.h"
 #include "fsi_material.h"
+#include "fsi_part.h"
 #include "fsi_walls.h"
 
 #include <algorithm>
@@ -32,8 +33,8 @@
 #include <vector>
 
 namespace LAMMPS_NS::FSI {
+class Cells;
 class Keywords;
-class Part;
 class Profile;
 class Record;
 class Sight;
@@ -72,6 +73,14 @@ struct Discretization : Resolution {
   double largest_cut;                    // support of the coarsest
   double dx_of(int type) const { return resolution[type].dx; }
   double h_of(int type) const { return resolution[type].h; }
+  // within which a wall of particles of this type pushes off fluid of that spacing
+  double guard_of(int type, double spacing) const
+  {
+    return state[type].guard * ((spacing + dx_of(type)) / (dx + dx_of(type)));
+  }
+  // the way out of the guards around a place, from the wall particles in cells
+  std::array<double, 3> out_of_guards(const Atom *, const Cells &, double spacing,
+                                      const double *at) const;
   // The spacings of fluids, from the above on, the coarsest; which of them a fluid type has
   std::vector<Resolution> levels;
   std::vector<int> level_of;
@@ -249,7 +258,7 @@ struct StepState {
 
 // Energy balance (compute fsi/energy): what each term took from the particles' energy since fix
 // fsi was defined, this rank's part; kept only while such a compute exists.
-struct Ledger {
+struct Ledger : Part {
   // clang-format off
     enum Term {
       ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS,
@@ -264,7 +273,17 @@ struct Ledger {
   void tally(Term term, double power) { energy_out[term] += tally_dt * power; }
   void set_tally(double dt) { tally_dt = kept ? dt : 0.0; }    // time that powers act for
 
+  // a step that is taken back: all but what it has made or deleted, which stays so
+  Rank rank() const override { return PAIRS; }
+  void start_step() override { std::copy_n(energy_out, NTERM, before); }
+  void follow_exchange()
+  {
+    for (const auto term : {FIELDS, LEVELS}) before[term] = energy_out[term];
+  }
+  void go_back() override { std::copy_n(before, NTERM, energy_out); }
+
  private:
+  double before[NTERM] = {};    // the step
   double tally_dt = 0.0;
 };
 

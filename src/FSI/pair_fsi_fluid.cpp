@@ -564,8 +564,7 @@ void PairFSIFluid::undo_advance()
 Contact PairFSIFluid::guard_of(int t, double dx) const
 {
   const State &s = disc->state[t];
-  if (s.species != SOLID)
-    return Contact(disc->dim, s.guard * ((dx + disc->dx_of(t)) / (disc->dx + disc->dx_of(t))));
+  if (s.species != SOLID) return Contact(disc->dim, disc->guard_of(t, dx));
   const double ratio = disc->dx_of(t) / dx;
   Contact guard(disc->dim, couple == WALL ? solids_guard * 0.5 * (dx + disc->dx_of(t)) : 0.0);
   guard.scale = disc->dim == 3 ? dx * ratio * ratio : ratio;

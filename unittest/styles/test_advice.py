@@ -218,6 +218,24 @@ def advice(folder, changes=(), file=None, ranks=1):
             if line.startswith("WARNING: Fix fsi: ")]
 
 
+@pytest.mark.parametrize("line, told", [
+    ("compute f water fsi/force", "Compute fsi/force .*: group water has no solid and no wall"),
+    ("compute f plate fsi/force", ""),
+    ("compute p plate fsi/probe p point 0.02 0.02 0",
+     "Compute fsi/probe .*: group plate has no fluid"),
+    ("compute p plate fsi/probe ux point 0.06 0.02 0", ""),
+    ("fix f plate fsi/watch 10", "Fix fsi/watch .*: group plate has no fluid and no solid"),
+    ("fix f plate fsi/watch 10 distance 0.1", ""), ("fix f all fsi/watch 10", "")])
+def test_what_looks_at_nothing(tmp_path, line, told):
+    text = DECK
+    for old, new in WALL if "watch" in line else ():
+        text = text.replace(old, new)
+    output = run(tmp_path, text.replace("run 0", f"{line}\nrun 0")).output
+    assert re.findall("WARNING: (.*) has nothing to act on", output) == ([told.split(" .*")[0]]
+                                                                        if told else [])
+    assert re.search(told.replace(".*", "has nothing to act on"), output)
+
+
 def test_what_moves_a_part_may_come_after_set(tmp_path):
     """Fsi/set prepares all as a run does, but before all fixes are there."""
     moved = DECK.replace("fix sph all",

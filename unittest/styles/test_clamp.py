@@ -1,10 +1,12 @@
 """Rigid bodies of wall particles, and elastic bodies with a rigid part, that fix rigid moves with
 the steps of fix fsi."""
 
+import re
+
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR
-from decks import materials, start
+from decks import deck as deck_of, materials, start
 from scenes import WATER, Scene, close, lammps as run_lammps, lattice, particles, run, watch
 
 DX, RHO, E = 0.01, 1000.0, 1.0e6
@@ -408,6 +410,12 @@ def test_torques_of_particles():
     assert spins[0] > 1e-3 and abs(spins[0] - spins[1]) < 1e-12 * spins[0]
 
 
+def deck_of_a_float():
+    return deck_of("-0.05 0.25 -0.05 0.25", DX, {"water": WATER, "buoy": "wall rho 500"},
+                   "fix w float fsi/wall/particle", group="water", water="0 0.1 0 0.04",
+                   float="0.12 0.16 0 0.04")
+
+
 def floats_data():
     """Two squares in water that fills the box."""
     x = lattice([30, 30], DX)
@@ -632,6 +640,26 @@ def test_fix_rigid_comes_after_fix_fsi():
     with s, pytest.raises(Exception, match=r"A body with sub-steps does not go with fix tip "
                           r"\(style rigid\): expected after fix"):
         s.run()
+
+
+@pytest.mark.parametrize("where", ["before", "early", "after"])
+def test_what_leads_the_fluid_is_told(tmp_path, where):
+    fix, text = f"fix r float rigid single {PLANE}\n", deck_of_a_float()
+    text = text.replace("fix sph", fix + "fix sph") if where == "before" else text + fix
+    if where == "early":
+        text += "fix_modify r bodyforces early\n"
+    found = [line for line in run(tmp_path, text + "run 1\n").output.splitlines()
+             if "leads the fluid by half a step, a first-order error: expected" in line]
+    assert len(found) == (where != "after")
+
+
+@pytest.mark.parametrize("fix, accepted", [("nve", False), ("nvt temp 1 1 1", False),
+                                           ("nve/noforce", True), ("move linear 1 0 0", True)])
+def test_what_takes_walls_apart_is_refused(tmp_path, fix, accepted):
+    done = run_lammps(tmp_path, deck_of_a_float() + f"fix m float {fix}\nrun 1\n")
+    assert accepted == (done.status == 0)
+    assert accepted or re.search(r"Fix m \(style \w+\) would take each of 16 wall particles, the "
+                                 r"first of them atom \d+, its own way", done.errors[0])
 
 
 def test_early_forces_are_refused():

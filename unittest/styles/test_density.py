@@ -276,6 +276,25 @@ def test_fsi_set_pressure(eos):
         assert np.abs(s.run().p - 70).max() < 1e-8
 
 
+@pytest.mark.parametrize("later", [False, True])
+@pytest.mark.parametrize("command", ["set group moving mass 30", "set group moving density 1000",
+                                     "set group held mass 5", "set group held type 3"])
+def test_masses_of_no_material(command, later):
+    """The mass of a cell, 10, times three; a density that LAMMPS takes for a mass; the type of
+    another wall. Fsi/set volume gives what it says."""
+    x = lattice((4, 8), 0.1)
+    wall = x[:, 1] < 0.4
+    with Scene(x, fluid="sound 20", dx=0.1, materials=(WATER, "wall rho 1000", "wall rho 3000"),
+               type=1 + wall, held=wall, commands=["fix w held fsi/wall/particle"]) as s:
+        s.run(int(later))
+        s.run_lines(command)
+        with pytest.raises(Exception, match=r"Atom \d+ of type \d has the mass \S+, a volume of"):
+            s.run()
+        s.run_lines("fsi/set all volume 0.03")
+        s.run().run(1)
+        close(s.get("rmass"), np.where(wall & ("type" in command), 90, 30), 1e-12)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 def test_article_is_its_settings(tmp_path, dim):
     """Scheme article is the six settings that its page lists, bit for bit; what a style says itself

@@ -62,19 +62,29 @@ def test_what_goes_is_what_the_body_covers(tmp_path, name):
                                                                          else 1)
     taken = 30 * 20 * (1 if given["dim"] == 2 else 10) - np.sum(frame["type"] == 1)
     assert abs(taken - bodies / cell) <= 0.5 + 1e-9
+    x = frame.vector(("x", "y", "z"))
+    apart = np.linalg.norm(x[frame["type"] == 1][:, None] - x[frame["type"] == 2], axis=2).min()
+    assert apart >= 0.9 * 0.5 * (0.01 + given["fine"]) - 1e-6    # the wall's guard
     if name == "same lattice":
-        x = np.column_stack([frame["x"], frame["y"]])
-        apart = np.linalg.norm(x[frame["type"] == 1][:, None] - x[frame["type"] == 2], axis=2)
-        assert taken == 60 and apart.min() > 0.0099
+        assert taken == 60 and apart > 0.0099
 
 
 def test_ranks(tmp_path):
-    """The same particles go on any number of ranks, also where rows on both sides are half
-    covered."""
+    """The same particles go, and move, on any number of ranks, also where rows on both sides are
+    half covered."""
     one, four = (left(tmp_path / str(ranks), ranks, origin="0.5 0 0") for ranks in (1, 4))
     places = [{(kind, round(x, 6), round(y, 6)) for kind, x, y in zip(f["type"], f["x"], f["y"])}
               for f in (one, four)]
     assert places[0] == places[1]
+
+
+def test_no_push_at_the_start(tmp_path):
+    """Of still water on the turned wall: the weight of what it displaces, not the guard's push."""
+    run(tmp_path, DECK.format(**{**FLAT, "angle": 30}).replace("write_dump", "fix g all gravity 10 "
+        "vector 0 -1 0\nfix m water fsi/wall/mirror xlo 0 xhi 0.3 ylo 0\nfsi/set water hydrostatic "
+        "0.2\ncompute f body fsi/force\nwrite_dump") + "variable f equal c_f[2]\nrun 0\n"
+        "print '${f}' file force\n")
+    assert float((tmp_path / "force").read_text()) == pytest.approx(60, rel=0.1)
 
 
 @pytest.mark.parametrize("groups, error", [

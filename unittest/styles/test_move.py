@@ -159,17 +159,25 @@ def test_goes_on_from_where_a_command_has_put_it(style):
         np.testing.assert_allclose(s.get("x")[16:], want, atol=1e-13)
 
 
-def test_a_variable_that_a_command_changes_moves_it():
-    """A displacement in steps, one with each run, as with fix move: not where a command has put
-    it."""
-    x, scene = held_lattice(density="mach off",
-                            commands=["variable zero equal 0", "variable d equal 0.01",
-                                      "fix drive held fsi/move variable v_d v_zero NULL v_zero "
-                                      "v_zero NULL"])
+@pytest.mark.parametrize("style", ("equal", "atom"))
+def test_a_variable_begins_where_particles_are(style):
+    """A displacement that is not 0 when the fix is given, or given again, or that a command
+    changes: what it changes by from then on."""
+    place, give = lambda t: 0.3 * (1 - np.cos(6 * t)), (
+        "fix drive held fsi/move variable v_d v_zero NULL v_u v_zero NULL")
+    x, scene = held_lattice(dt=1e-3, density="mach off", commands=[
+        "variable zero equal 0", f"variable d {style} 0.3*(1-cos(6*time))",
+        f"variable u {style} 1.8*sin(6*time)"])
     with scene as s:
-        for d in (0.01, 0.02, 0.03):
-            s.run_lines(f"variable d equal {d}", "run 0", "run 1")
-            np.testing.assert_allclose(s.get("x")[16:], x[16:] + [d, 0.0, 0.0], atol=1e-13)
+        s.run(100)
+        s.run_lines(give)
+        for t, command in (0.1, ""), (0.12, "unfix drive\n" + give), (
+                0.14, f"variable d {style} 5+0.3*(1-cos(6*time))"):
+            s.run_lines(*command.split("\n"))
+            s.run(1)
+            s.run(19)
+            np.testing.assert_allclose(s.get("x")[16:, 0] - x[16:, 0], place(t + 0.02) - place(0.1),
+                                       atol=1e-13)
 
 
 def test_a_run_that_stops_in_a_step_puts_it_back(tmp_path, monkeypatch):

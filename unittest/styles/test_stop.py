@@ -6,8 +6,9 @@ import re
 import numpy as np
 import pytest
 
-from decks import LIMITED, total_lagrangian
-from scenes import DX, RUBBER, Scene, dam_gate, difference, fluid_box, lammps, lattice, run, watch
+from decks import LIMITED, deck, total_lagrangian
+from scenes import (DX, RUBBER, WATER, Scene, dam_gate, difference, fluid_box, lammps, lattice, run,
+                    watch)
 
 from fsi import dump
 
@@ -193,6 +194,29 @@ def test_a_reflection_goes_back(tmp_path, ranks):
         for frame in (0, 5):
             for quantity in ("x", "v", "rho"):
                 assert difference(whole[step + frame], rest[frame], quantity) < 1e-13, quantity
+
+
+def test_a_float_goes_back(tmp_path):
+    """With the velocity that its acceleration is from, and the sums of energies."""
+    body = "fix w float fsi/wall/particle\nfix r float rigid single force * off on off\n"
+    text = deck("-0.05 0.25 -0.05 0.25", DX, {"water": WATER, "buoy": "wall rho 500"}, body,
+                "fix g all gravity 9.81 vector 0 -1 0", "fix m water fsi/wall/mirror xlo 0 xhi 0.2 "
+                "ylo 0", "fsi/set water hydrostatic 0.1", "compute e all fsi/energy",
+                "variable v equal vcm(float,y)", dt=2e-4, group="water",
+                fluid="sound 15 artificial/visc 0.05 0", water="0 0.2 0 0.1",
+                float="0.08 0.12 0.1 0.14")
+    told = lambda name: ("fix p all print 1 '$(step) $(v_v:%.17g) $(c_e[5]:%.17g) "
+                         f"$(c_e[9]:%.17g)' file {name} screen no\n")
+    run(tmp_path / "whole", text + told("whole") + "run 20\nrun 5\n")
+    push = "group one id 1\nfix push one addforce 0 1e9 0\n"
+    done = lammps(tmp_path, text + f"run 20\n{push}run 5\n")
+    assert "State of step 20: fsi_stop.restart" in error(done)
+    rest = ("units si\nread_restart fsi_stop.restart\n" + text[text.index("fix sph"):]).replace(
+        "fsi/set", "# ")
+    run(tmp_path, rest + told("rest") + "run 5\n")
+    rows = [np.loadtxt(tmp_path / file) for file in ("whole/whole", "rest")]
+    assert np.ptp(rows[0][20:, 1]) > 1e-4
+    np.testing.assert_allclose(rows[1], rows[0][-len(rows[1]):], rtol=1e-9)
 
 
 def test_the_limit_is_a_keyword(tmp_path):
