@@ -502,6 +502,11 @@ void PairFSIFluid::advance_density()
   });
 }
 
+void PairFSIFluid::prescribe()
+{
+  if (implicit) members->implicit->find_unforeseen();
+}
+
 void PairFSIFluid::integrate_substeps()
 {
   if (members->light_solids->resisted())
