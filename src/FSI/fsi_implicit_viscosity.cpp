@@ -123,11 +123,13 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const FluidPairs &pairs,
         if (of_j.species == RIGID && !of_j.noslip) continue;
         const double of_face =
             2.0 * cut_off(in, j, g) * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
+        const bool thin = in.ratio[in.type[*j]].thin;
         for (int d = 0; d < D; d++) {
-          const double sign = image.rubbing_sign[d];
-          diagonal[D * row.i + d] += of_face * (1.0 + sign * image.slip_sign[d]);
-          given[D * row.i + d] +=
-              of_face * (sign * (2.0 * atom->v[*j][d] - image.slip_v[d]) + image.rubbing_v[d]);
+          const double sign = image.rubbing_sign[d], own = image.slip_sign[d];
+          const double beyond = thin ? 2.0 * atom->v[*j][d] - image.slip_v[d]
+                                     : laws.wall_velocity[*j][d] + own * laws.before[row.i][d];
+          diagonal[D * row.i + d] += of_face * (1.0 + sign * own);
+          given[D * row.i + d] += of_face * (sign * beyond + image.rubbing_v[d]);
         }
       }
   });

@@ -31,8 +31,10 @@ class PairSets;
 // The velocities w that solve  m_i (w_i - v_i)/dt = f_i + sum_j k_ij (w_i - w_j),  v and f given,
 // k_ij = V_i V_j (eta_i + eta_j) W'/r of the plain form (fsi_pair_laws.h): backward Euler, by
 // conjugate gradients with the inverse of the diagonal (Hestenes and Stiefel 1952). Beyond
-// no-slip walls and solids fluid has the velocity 2 v_wall - w_i. f has what the pulls of the step
-// (fsi_hub.h) do with w, and of forces that are not known yet those of the last step.
+// no-slip walls and solids fluid has the velocity that explicit viscosity finds there, less what i
+// changes by in the step: 2 v_wall - sum v W/sum W + v_i - w_i; of thin ones 2 v_wall - w_i. f has
+// what the pulls of the step (fsi_hub.h) do with w, and of forces that are not known yet those of
+// the last step.
 class ImplicitViscosity : protected Pointers {
  public:
   ImplicitViscosity(LAMMPS *lmp, const Discretization &disc, StepState &step, Ghosts &ghosts) :

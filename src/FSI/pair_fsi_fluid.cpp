@@ -802,7 +802,7 @@ ForceLaws PairFSIFluid::laws_of_forces()
   if (fix_stress) laws.stress = fix_stress->stress;
   if (ledger->kept) laws.taken = taken.data();
   laws.viscosity = step->viscosity;
-  laws.mirrors_own = implicit;
+  if (implicit) laws.before = vectors(atom->v);
   return laws;
 }
 
