@@ -155,6 +155,8 @@ void FixFSI::set_fields()
                d < disc.dim && facts_of_fluids(lmp).density_follows_shift, step.shift_velocity[d]);
   fields.set("walls near", Fields::STEP, step.walls.any(), step.wmask);
   fields.set("wall velocity", Fields::STEP, disc.noslip_walls, step.wall_velocity, 3);
+  fields.set("unforeseen force", Fields::RESTART, facts_of_fluids(lmp).implicit_viscosity,
+             step.unforeseen, 3);
   fields.set("wall stiffness", Fields::STEP, particle_walls && disc.several_stiffnesses(),
              step.wall_stiffness);
 
@@ -358,6 +360,7 @@ void FixFSI::update_state(bool advance)
   fields.grow();
   changes.in_step();
   step.inverted = -1;
+  step.pulls.clear();
   step.behind = advance ? 0.5 * update->dt : 0.0;
   ledger.set_tally(advance ? update->dt : 0.0);
   if (advance) ledger.follow_exchange();

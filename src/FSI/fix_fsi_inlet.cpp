@@ -252,6 +252,7 @@ void FixFSIInlet::advance(bool advance)
     // by that density: rates at the buffer's end depend on lists
     buffer.follow(i, place.inside, fullness.column);
   }
+  if (step->unforeseen) buffer.add_pulls(absorber.wave, step->pulls);
 }
 
 void FixFSIInlet::check_far()

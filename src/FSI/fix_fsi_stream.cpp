@@ -187,33 +187,56 @@ void FixFSIStream::advance(bool advance)
   }
 }
 
-// the force that brings v to u(1 - a) + a v in this step, a = exp(-k w dt): stable for any rate
+double FixFSIStream::target(int d, int i) const
+{
+  const double u = (*velocity)(d, i);
+  if (!std::isfinite(u))
+    error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u, "xyz"[d],
+               atom -> tag[i], velocity -> see(d));
+  return u;
+}
+
+// Implicit viscosity has the force m k w (u - v) with the velocity at the end of the step: how fast
+// a steady flow is does not depend on the step
+void FixFSIStream::end_state(bool advance)
+{
+  first_pull = end_of_pulls = step->pulls.size();
+  foreseen = advance && step->unforeseen;
+  if (!foreseen) return;
+  velocity->evaluate_for(zone, 0, 3);
+  for (const auto &[i, weight] : zone)
+    for (int d = 0; weight > 0.0 && d < 3; d++)
+      if (velocity->given(d)) step->pulls.push_back({i, d, rate * weight, target(d, i)});
+  end_of_pulls = step->pulls.size();
+}
+
+void FixFSIStream::push(int i, int d, double f)
+{
+  atom->f[i][d] += f;
+  given[d] += f;
+  // in the middle of the kick
+  given[3] +=
+      f * (atom->v[i][d] + 0.5 * update->dt * force->ftm2v * atom->f[i][d] / atom->rmass[i]);
+}
+
+// explicit: the force that brings v to u(1 - a) + a v in this step, a = exp(-k w dt): stable for
+// any rate
 void FixFSIStream::post_force(int)
 {
   find_weights();    // in setup
-  velocity->evaluate_for(zone, 0, 3);
   std::fill_n(given, 4, 0.0);
   const double dt = update->dt;
-  if (dt == 0.0) return;
-  for (const auto &[i, weight] : zone) {
-    if (weight == 0.0) continue;
-    const double m = atom->rmass[i], part = -std::expm1(-rate * weight * dt);
-    double *const f = atom->f[i], *const v = atom->v[i];
-    for (int d = 0; d < 3; d++) {
-      if (!velocity->given(d)) continue;
-      const double u = (*velocity)(d, i);
-      if (!std::isfinite(u)) {
-        const char name = "xyz"[d];
-        error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u, name,
-                   atom->tag[i], velocity->see(d));
-      }
-      const double push = m * part * (u - v[d]) / (dt * force->ftm2v);
-      f[d] += push;
-      given[d] += push;
-      // in the middle of the kick
-      given[3] += push * (v[d] + 0.5 * dt * force->ftm2v * f[d] / m);
-    }
+  for (size_t k = first_pull; k < end_of_pulls; k++) {
+    const auto &[i, d, of_rate, to, v] = step->pulls[k];
+    push(i, d, atom->rmass[i] * of_rate * (to - v) / force->ftm2v);
   }
+  if (!foreseen) velocity->evaluate_for(zone, 0, 3);
+  for (const auto &[i, weight] : zone)
+    for (int d = 0; !foreseen && weight > 0.0 && dt > 0.0 && d < 3; d++) {
+      if (!velocity->given(d)) continue;
+      const double part = -std::expm1(-rate * weight * dt);
+      push(i, d, atom->rmass[i] * part * (target(d, i) - atom->v[i][d]) / (dt * force->ftm2v));
+    }
   ledger->tally(Ledger::FIELDS, -given[3]);
   if (update->ntimestep > update->firststep) work += dt * given[3];
 }

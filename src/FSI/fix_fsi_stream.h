@@ -48,6 +48,7 @@ class FixFSIStream : public Fix, public FSI::Part {
 
   Rank rank() const override { return STREAMS; }
   void advance(bool) override;    // density, after that of the fluid
+  void end_state(bool) override;
 
  private:
   FSI::Keywords keywords;
@@ -58,7 +59,7 @@ class FixFSIStream : public Fix, public FSI::Part {
   double low = 0.0, high = 0.0;    // ends of the zone along the axis
   class Region *region = nullptr;
   const FSI::Discretization *disc = nullptr;
-  const FSI::StepState *step = nullptr;
+  FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
   bigint last_step = -1;    // of the weights
   struct Member {
@@ -66,11 +67,16 @@ class FixFSIStream : public Fix, public FSI::Part {
     double weight = 0.0;    // 0 outside of the zone and at its ends, 1 in its middle
   };
   std::vector<Member> zone;    // local fluid in and near it, as of the last list
-  double given[4] = {};        // force on the fluid and its power, this rank's part
-  double work = 0.0;           // since the fix was defined, likewise
+  // those of this step, under implicit viscosity, and are there any on some rank?
+  size_t first_pull = 0, end_of_pulls = 0;
+  bool foreseen = false;
+  double given[4] = {};    // force on the fluid and its power, this rank's part
+  double work = 0.0;       // since the fix was defined, likewise
 
   void find_zone();
   double in_zone(int i) const;
+  double target(int d, int i) const;
+  void push(int i, int d, double f);
   void find_weights();
 };
 

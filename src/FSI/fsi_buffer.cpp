@@ -504,28 +504,42 @@ bool Buffer::find_followers()
   return true;
 }
 
-// forces that give the buffer its velocity at the end of the step; where there is no fluid at the
-// plane it keeps what it has
+// where there is no fluid at the plane it keeps what it has
+double Buffer::velocity_at_end(const OpenEnd::Place &place, int d, double wave) const
+{
+  if (!end.has_own_velocity())
+    return end.value(d, place.i) + (d == end.axis ? end.side * wave : 0.0);
+  return !place.known ? atom->v[place.i][d] : d == end.axis ? place.normal : 0.0;
+}
+
+void Buffer::add_pulls(double wave, std::vector<StepState::Pull> &pulls)
+{
+  if (!end.has_own_velocity()) end.given.evaluate_for(end.places, 0, 3);
+  for (const auto &place : end.places)
+    for (int d = 0; place.inside <= 0.0 && d < end.disc->dim; d++)
+      pulls.push_back({place.i, d, HUGE_VAL, velocity_at_end(place, d, wave)});
+}
+
+// forces that give the buffer its velocity at the end of the step
 void Buffer::prescribe(double wave)
 {
   std::fill_n(push, 4, 0.0);
   const double dt = update->dt;
   if (dt == 0.0) return;
-  const bool wants_velocity = end.has_own_velocity(), found = find_followers();
-  if (!wants_velocity) end.given.evaluate_for(end.places, 0, 3);
+  const bool found = find_followers();
+  if (!end.has_own_velocity()) end.given.evaluate_for(end.places, 0, 3);
   for (const auto &place : end.places) {
     const int i = place.i;
     if (place.inside > 0.0) continue;
     const double m = atom->rmass[i];
     double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < end.disc->dim; d++) {
-      const double more = d == end.axis ? end.side * wave : 0.0;
-      const double u = !wants_velocity ? end.value(d, i) + more
-          : !place.known               ? v[d]
-          : d == end.axis              ? place.normal
-                                       : 0.0;
+      const double u = velocity_at_end(place, d, wave);
       if (member(i) == FOLLOWED) {
-        follower[i][d] = found ? follower[i][d] + more : u;
+        if (!found)
+          follower[i][d] = u;
+        else if (d == end.axis)
+          follower[i][d] += end.side * wave;
         behind[i][d] += 0.5 * dt * follower[i][d];
       }
       const double to = m * (u - v[d]) / (dt * force->ftm2v), change = to - f[d];

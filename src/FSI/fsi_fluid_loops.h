@@ -191,8 +191,7 @@ struct RateLaws {
 struct ForceLaws {
   double alpha = 0.0, beta = 0.0;    // artificial viscosity
   int laminar = NO_LAMINAR;
-  double central_length_sq = 0.0;    // over h^2; 0: the plain form
-  bool mirrors_own = false;          // beyond no-slip faces: twice their velocity, less one's own
+  double central_length_sq = 0.0;       // over h^2; 0: the plain form
   const double *viscosity = nullptr;    // per particle; null: that of its state
   // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
   const std::array<double, 3> *extrapolate = nullptr;
@@ -202,6 +201,8 @@ struct ForceLaws {
   bool solids_slip = false;
   // per particle, that no-slip walls of particles and solids have in viscous forces
   const double (*wall_velocity)[3] = nullptr;
+  // per particle, velocities of when those were found; null: those of the loop
+  const double (*before)[3] = nullptr;
   // per particle, of solids (couple full); null: they have none
   const double *const *stress = nullptr;
   const std::array<double, 3> *gravity = nullptr;    // per type

@@ -392,7 +392,8 @@ struct RowConstants {
   double rubs, visc;         // 0 where a wall slips, else 1; sum of both viscosities
   double at_rest;            // volume of i at rest, over the density of j at rest (of solids: 1)
   double volume, sharper;    // of neighbors of another spacing
-  bool thin, mirrors_own;
+  bool thin;
+  double changed[3];        // of the velocity of i, since that beyond faces was found
   double extrapolate[3];    // solids and thin walls: gravity, if pressures beyond them are
                             // hydrostatic
 };
@@ -425,7 +426,7 @@ FSI_INLINE RowConstants constants_of_row(const FluidParticles &in, const ForceLa
     r.visc *= backfill_weight_of(in, i, type_j);
   }
   r.thin = (FLAGS & Flag::UNEQUAL) && in.ratio[type_j].thin;
-  r.mirrors_own = r.thin || laws.mirrors_own;
+  for (int d = 0; d < D; d++) r.changed[d] = laws.before ? own_point.v[d] - laws.before[i][d] : 0.0;
   if (KIND == WITH_SOLID || r.thin) {
     const auto *const g = KIND == WITH_WALL ? laws.gravity : laws.extrapolate;
     const double along = r.thin ? in.thin->backfill_weight[i] / in.thin->backfill[i] : 1.0;
@@ -450,10 +451,12 @@ FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, cons
   const auto visc = both_viscosities<KIND, FLAGS, T>(laws, constant.visc, j);
   // what fluid would have in the place of j, of a wall or solid; before a plane of symmetry i is
   // on both sides
-  const auto beyond_face = [&](int d, const T &own) FSI_INLINE_LAMBDA {
-    return constant.mirrors_own ? 2.0 * velocity_of_j[d] - own : L::make([&](int k) {
-      return laws.wall_velocity[j[k]][d];
-    });
+  const auto beyond_face = [&](int d) FSI_INLINE_LAMBDA {
+    if (constant.thin) return 2.0 * velocity_of_j[d] - mirror.own_velocity(d, pi.v[d]);
+    return L::make([&](int k) {
+             return laws.wall_velocity[j[k]][d];
+           }) -
+        mirror.slip_sign[d] * constant.changed[d];
   };
   const T vv = constant.at_rest * (with_solid(KIND) ? pj.vol : pj.rho * pj.vol);
   T rubbing[D], loss = 0.0;
@@ -465,8 +468,7 @@ FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, cons
     };
     T w[D], seen[D], back[D], of_j[D];
     for (int d = 0; d < D; d++) {
-      const T vj = KIND == WITH_FLUID ? velocity_of_j[d]
-                                      : beyond_face(d, mirror.own_velocity(d, pi.v[d]));
+      const T vj = KIND == WITH_FLUID ? velocity_of_j[d] : beyond_face(d);
       w[d] = pi.v[d] - beyond(d, vj);
       back[d] = vj - beyond(d, pi.v[d]);
       seen[d] = -mirror.sign[d] * x[d];
@@ -484,7 +486,7 @@ FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, cons
   } else if (KIND != WITH_FLUID) {
     // fluid beyond the wall or inside the solid, with the velocity extrapolated
     T w[D];
-    for (int d = 0; d < D; d++) w[d] = pi.v[d] - beyond_face(d, pi.v[d]);
+    for (int d = 0; d < D; d++) w[d] = pi.v[d] - beyond_face(d);
     viscous(g, visc, vv, x, w, rubbing);
     if (FLAGS & Flag::SUMS) loss = -product(rubbing, v);
   } else

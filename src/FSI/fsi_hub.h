@@ -247,6 +247,16 @@ struct StepState {
   std::vector<double> impedance[6], swerve[3];
   // of fluids in the last force, local and ghost; null: none depends on the shear rate
   const double *viscosity = nullptr;
+  // Of implicit viscosity. Per atom, of fluids: force of the last step that its system did not have,
+  // as that of other fixes, which act later; null: viscosity is explicit
+  double **unforeseen = nullptr;
+  // what brings a component of a local particle's velocity to a value
+  struct Pull {
+    int i, d;
+    double rate, to;     // force: m rate (to - velocity at the end); HUGE_VAL: it has that
+    double end = 0.0;    // velocity at the end of the step, when pairs have their forces
+  };
+  std::vector<Pull> pulls;
   double *wall_stiffness = nullptr;    // rho dp/drho of wall particles, that of the fluid around
                                        // them; null: it is the same for all fluids, and in the
                                        // wall's state

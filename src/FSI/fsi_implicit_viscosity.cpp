@@ -56,8 +56,27 @@ template <int D> void ImplicitViscosity::begin(const double *f, int columns)
     for (int d = 0; d < D; d++) w[D * i + d] = atom->v[i][d];
   for (int i = 0; i < atom->nlocal; i++)
     for (int d = 0; d < D; d++)
-      given[D * i + d] = driving[D * i + d] =
-          f[columns * i + d] + atom->rmass[i] * step.body_forces.of_type[atom->type[i]][d];
+      given[D * i + d] = driving[D * i + d] = f[columns * i + d] +
+          atom->rmass[i] * step.body_forces.of_type[atom->type[i]][d] + step.unforeseen[i][d];
+  free.assign(n, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (disc.state[atom->type[i]].species == FLUID && (atom->mask[i] & disc.mover->groupbit))
+      std::fill_n(&free[D * i], D, 1);
+}
+
+template <int D> void ImplicitViscosity::pull()
+{
+  for (const auto &pull : step.pulls) {
+    const size_t a = D * pull.i + pull.d;
+    if (pull.rate == HUGE_VAL) {
+      free[a] = 0;
+      w[a] = pull.to;
+    } else {
+      const double per_velocity = atom->rmass[pull.i] * pull.rate / force->ftm2v;
+      diagonal[a] += per_velocity;
+      given[a] += per_velocity * pull.to;
+    }
+  }
 }
 
 template <int D>
@@ -104,11 +123,13 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const FluidPairs &pairs,
         if (of_j.species == RIGID && !of_j.noslip) continue;
         const double of_face =
             2.0 * cut_off(in, j, g) * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
+        const bool thin = in.ratio[in.type[*j]].thin;
         for (int d = 0; d < D; d++) {
-          const double sign = image.rubbing_sign[d];
-          diagonal[D * row.i + d] += of_face * (1.0 + sign * image.slip_sign[d]);
-          given[D * row.i + d] +=
-              of_face * (sign * (2.0 * atom->v[*j][d] - image.slip_v[d]) + image.rubbing_v[d]);
+          const double sign = image.rubbing_sign[d], own = image.slip_sign[d];
+          const double beyond = thin ? 2.0 * atom->v[*j][d] - image.slip_v[d]
+                                     : laws.wall_velocity[*j][d] + own * laws.before[row.i][d];
+          diagonal[D * row.i + d] += of_face * (1.0 + sign * own);
+          given[D * row.i + d] += of_face * (sign * beyond + image.rubbing_v[d]);
         }
       }
   });
@@ -143,25 +164,24 @@ template <int D>
 void ImplicitViscosity::solve(PairSets &pairs, const FluidParticles &particles,
                               const ForceLaws &laws, const double *f, int columns)
 {
-  const int nlocal = atom->nlocal, *const type = atom->type;
+  const int nlocal = atom->nlocal;
   begin<D>(f, columns);
   pairs.for_all(step.walls, particles, [&](const PairSet &set, const FluidPairs &of_set, int) {
     add_pairs<D>(set, of_set, laws);
   });
   ghosts.add(diagonal.data(), D);
   ghosts.add(given.data(), D);
+  pull<D>();
   const size_t n = w.size();
-  std::vector<double> z(n, 0.0), free(n, 0.0);
+  std::vector<double> z(n, 0.0);
   for (auto *of : {&r, &p, &Ap}) of->assign(n, 0.0);
   const double per_dt = 1.0 / (update->dt * force->ftm2v);
   multiply<D>(w, Ap);
   double scale = 0.0;
   for (int i = 0; i < nlocal; i++) {
     const double inertia = atom->rmass[i] * per_dt;
-    const bool moves =
-        disc.state[type[i]].species == FLUID && (atom->mask[i] & disc.mover->groupbit);
-    for (size_t a = D * i; moves && a < (size_t) D * (i + 1); a++) {
-      free[a] = 1.0;
+    for (size_t a = D * i; a < (size_t) D * (i + 1); a++) {
+      if (!free[a]) continue;
       r[a] = given[a] - Ap[a];
       const double viscous = r[a] - driving[a];
       scale += (driving[a] * driving[a] + viscous * viscous) / inertia;
@@ -173,7 +193,7 @@ void ImplicitViscosity::solve(PairSets &pairs, const FluidParticles &particles,
   for (int niterations = 0;; niterations++) {
     double sums[2] = {}, all[2];
     for (size_t a = 0; a < (size_t) D * nlocal; a++) {
-      if (free[a] == 0.0) continue;
+      if (!free[a]) continue;
       z[a] = r[a] / diagonal[a];
       sums[0] += r[a] * z[a];
       sums[1] += r[a] * r[a] / (atom->rmass[a / D] * per_dt);
@@ -195,9 +215,21 @@ void ImplicitViscosity::solve(PairSets &pairs, const FluidParticles &particles,
     }
   }
   ghosts.send(w.data(), D);
+  for (auto &pull : step.pulls) pull.end = w[D * pull.i + pull.d];
+}
+
+void ImplicitViscosity::find_unforeseen()
+{
+  const double dt = update->dt * force->ftm2v;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < disc.dim; d++) {
+      const size_t a = disc.dim * i + d;
+      double &f = step.unforeseen[i][d];
+      f = free[a] ? f + atom->f[i][d] - atom->rmass[i] * (w[a] - atom->v[i][d]) / dt : 0.0;
+    }
 }
 
 double ImplicitViscosity::memory_usage() const
 {
-  return (double) (k.capacity() + 7 * w.capacity()) * sizeof(double);
+  return (double) (k.capacity() + 7 * w.capacity()) * sizeof(double) + bytes_of(free);
 }

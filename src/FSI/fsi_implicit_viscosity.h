@@ -31,24 +31,26 @@ class PairSets;
 // The velocities w that solve  m_i (w_i - v_i)/dt = f_i + sum_j k_ij (w_i - w_j),  v and f given,
 // k_ij = V_i V_j (eta_i + eta_j) W'/r of the plain form (fsi_pair_laws.h): backward Euler, by
 // conjugate gradients with the inverse of the diagonal (Hestenes and Stiefel 1952). Beyond
-// no-slip walls and solids fluid has the velocity 2 v_wall - w_i.
+// no-slip walls and solids fluid has the velocity that explicit viscosity finds there, less what i
+// changes by in the step: 2 v_wall - sum v W/sum W + v_i - w_i; of thin ones 2 v_wall - w_i. f has
+// what the pulls of the step (fsi_hub.h) do with w, and of forces that are not known yet those of
+// the last step.
 class ImplicitViscosity : protected Pointers {
  public:
-  ImplicitViscosity(LAMMPS *lmp, const Discretization &disc, const StepState &step,
-                    Ghosts &ghosts) :
-      Pointers(lmp),
-      disc(disc), step(step), ghosts(ghosts)
+  ImplicitViscosity(LAMMPS *lmp, const Discretization &disc, StepState &step, Ghosts &ghosts) :
+      Pointers(lmp), disc(disc), step(step), ghosts(ghosts)
   {
   }
   // rows of dim numbers of local and ghost particles; f: what else acts, on local ones in rows of
   // `columns` numbers. Pairs and points are those of the forces.
   const std::vector<double> &solve(PairSets &, const FluidParticles &, const ForceLaws &,
                                    const double *f, int columns);
+  void find_unforeseen();    // when all forces are there
   double memory_usage() const;
 
  private:
   const Discretization &disc;
-  const StepState &step;
+  StepState &step;
   Ghosts &ghosts;
   // pairs of fluids, with k in the order of the rows
   struct Block {
@@ -58,11 +60,13 @@ class ImplicitViscosity : protected Pointers {
   };
   std::vector<Block> blocks;
   std::vector<double> k, diagonal, w, r, p, Ap;
+  std::vector<char> free;                // what is not given
   std::vector<double> driving, given;    // forces without viscosity; with that of what is given
   template <int D>
   void solve(PairSets &, const FluidParticles &, const ForceLaws &, const double *f, int columns);
   template <int D> void begin(const double *f, int columns);
   template <int D> void add_pairs(const PairSet &, const FluidPairs &, const ForceLaws &);
+  template <int D> void pull();
   template <int D> void multiply(std::vector<double> &x, std::vector<double> &y);
 };
 

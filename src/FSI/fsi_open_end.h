@@ -289,7 +289,8 @@ namespace FSI {
     void exchange(const std::vector<const OpenEnd *> &all_ends);
     void start_step();
     void follow(int i, double s, double column);
-    void prescribe(double wave);    // velocities
+    void add_pulls(double wave, std::vector<StepState::Pull> &);    // to velocities
+    void prescribe(double wave);                                    // velocities
     void check_supply();
     int count() const;    // of this rank
 
@@ -310,6 +311,7 @@ namespace FSI {
     double last_count = -1.0, taken = 0.0;
     bool warned_of_stranger = false, warned_of_supply = false;    // in this run
 
+    double velocity_at_end(const OpenEnd::Place &, int d, double wave) const;
     Member member(int i) const { return static_cast<Member>(members[i]); }
     int first_axis() const { return end.axis == 0 ? 1 : 0; }
     Column along(const double *x) const { return {x[first_axis()], x[end.axis == 2 ? 1 : 2]}; }

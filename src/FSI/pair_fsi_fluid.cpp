@@ -505,6 +505,11 @@ void PairFSIFluid::advance_density()
   });
 }
 
+void PairFSIFluid::prescribe()
+{
+  if (implicit) members->implicit->find_unforeseen();
+}
+
 void PairFSIFluid::integrate_substeps()
 {
   if (members->light_solids->resisted())
@@ -799,7 +804,7 @@ ForceLaws PairFSIFluid::laws_of_forces()
   if (fix_stress) laws.stress = fix_stress->stress;
   if (ledger->kept) laws.taken = taken.data();
   laws.viscosity = step->viscosity;
-  laws.mirrors_own = implicit;
+  if (implicit) laws.before = vectors(atom->v);
   return laws;
 }
 

@@ -70,6 +70,7 @@ class PairFSIFluid : public PairFSI {
   bool add_rates(bool) override;
   void advance(bool) override;
   void add_number_density(double *, bool of_all_bodies) override;
+  void prescribe() override;
   void integrate_substeps() override;
   void react() override;
   void undo_advance() override;

@@ -56,6 +56,24 @@ def test_uniform_stream(n, axis, sign):
         assert energy() == pytest.approx(start, rel=1e-9)
 
 
+def test_implicit_viscosity_has_buffers_as_given():
+    """What comes in slides along the plane: from one end to the other, at rest, the velocity of
+    what is very viscous falls by a straight line, as if the ends were half a spacing further. With
+    buffers as free unknowns it has 15 % of the slope."""
+    n, dx, U = (24, 6), 0.1, 0.1
+    with open_box(n, dx, 0, f"fix i all fsi/inlet xlo 0 velocity 0 {U} 0",
+                  f"fix o all fsi/outlet xhi {n[0] * dx} velocity 0 0 0",
+                  fluid="laminar/visc laminar/implicit yes",
+                  materials=("fluid rho 1000 viscosity 1e6",)) as s:
+        go_on(s, 10)
+        x, v = s.get("x")[:, 0], s.get("v")[:, 1]
+        inside = (x > 0) & (x < n[0] * dx)
+        slope, middle = np.polyfit(x[inside] - n[0] * dx / 2, v[inside], 1)
+        print(f"{-slope * n[0] * dx / U:.4f} of the slope, {2 * middle / U:.4f} of the mean")
+        assert -slope * n[0] * dx / U == pytest.approx(24 / 25, rel=0.02)
+        assert middle == pytest.approx(U / 2, rel=0.01)
+
+
 @pytest.mark.parametrize("n, axis",
                          [((12, 16), 0), ((16, 12), 1), ((12, 16, 16), 0), ((16, 16, 12), 2)],
                          ids=["x", "y", "x in 3D", "z in 3D"])

@@ -11,7 +11,7 @@ from scenes import WATER, Kernel, close, difference, differing, lammps, lattice,
 from fsi import dump, paths
 
 DX, C, G = 0.01, 20.0, 9.81
-MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500",
+MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500", syrup="fluid rho 1000 viscosity 50",
                       as_stiff="fluid rho 1000 sound 14.142135623730951",
                       wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
 
@@ -460,6 +460,28 @@ fix m lid move linear {speed} 0 0
         print(f"Couette, t = {frame.time / viscous:.3f} H^2/nu: largest error "
               f"{np.abs(error).max() / speed:.4f} U")
         assert np.abs(error).max() < 0.03 * speed
+
+
+@pytest.mark.parametrize("form", ["laminar/visc", "laminar/visc laminar/implicit yes"])
+def test_turning_vessel(tmp_path, form):
+    """Oil that turns with its vessel, 10 spacings in radius, goes on so: the velocity beyond the
+    face is the wall's half way to the oil, of either form. That of the wall's particles would make
+    it 5 % faster."""
+    x = lattice((32, 32), DX) - [16 * DX, 16 * DX, 0]
+    x = x[np.hypot(x[:, 0], x[:, 1]) < 15 * DX]
+    kind = np.where(np.hypot(x[:, 0], x[:, 1]) < 10 * DX, 1, 2)
+    v = np.stack([-x[:, 1], x[:, 0], 0 * x[:, 0]], 1)
+    text = deck(f"tension yes {form}", "syrup wall", "slip no", gravity=0, more=f"""group wall type 2
+fix m wall move rotate 0 0 0 0 0 1 {2 * np.pi}
+{shot(700)}run 700
+""")
+    frame = dump.read(go(tmp_path, text, data(x, kind, v, ((-0.3, -0.3, -DX / 2),
+                                                           (0.3, 0.3, DX / 2)))).folder
+                      / "atoms.dump")[-1]
+    x, v = frame.vector()[frame["type"] == 1], frame.vector(("vx", "vy", "vz"))[frame["type"] == 1]
+    turn = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]).sum() / (x[:, :2]**2).sum()
+    print(f"{form}: {turn:.4f} of the vessel's turn")
+    assert abs(turn - 1) < 0.005
 
 
 @pytest.mark.slow
