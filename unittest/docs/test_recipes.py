@@ -212,7 +212,7 @@ def test_piston_makes_the_waves_that_are_asked_for(tmp_path):
 
 
 def test_solitary_wave(tmp_path):
-    """Heights and speed are those of the page; the first height within 3 % of 60 mm, the speed
+    """Heights and speed are those of the page; the first height within 4 % of 60 mm, the speed
     within 5 % of sqrt(g (d + H)). A crest is where a parabola over 0.5 s, a third of the wave, is
     highest."""
     found = go(tmp_path, "in.solitary", dx=0.02, n=4200)
@@ -232,7 +232,7 @@ def test_solitary_wave(tmp_path):
         [1000 * height for height in heights], abs=0.2)
     assert float(page[2]) == pytest.approx(speed, abs=0.015) and page[3] == f"{theory:.2f}"
     assert not found.warnings and heights[0] == pytest.approx(
-        0.06, rel=0.03) and speed == pytest.approx(theory, rel=0.05)
+        0.06, rel=0.04) and speed == pytest.approx(theory, rel=0.05)
 
 
 def test_cylinder_on_a_spring(tmp_path):
