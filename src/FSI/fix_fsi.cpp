@@ -266,9 +266,7 @@ void FixFSI::find_parts()
     return a->facts().style < b->facts().style;
   });
   for (auto *p : fixes_of<Part>(lmp)) parts.push_back(p);
-  parts.push_back(&members->surface_deficit);
-  parts.push_back(&members->clamps);
-  parts.push_back(&ledger);
+  parts.insert(parts.end(), {&members->surface_deficit, &members->clamps, &ledger});
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
   });
