@@ -247,8 +247,8 @@ struct StepState {
   std::vector<double> impedance[6], swerve[3];
   // of fluids in the last force, local and ghost; null: none depends on the shear rate
   const double *viscosity = nullptr;
-  // Of implicit viscosity. Per atom, of fluids: force of the last step that its system did not have,
-  // as that of other fixes, which act later; null: viscosity is explicit
+  // Of implicit viscosity. Per atom, of fluids: force of the last step that its system lacked, as
+  // that of other fixes, which act later; null: viscosity is explicit
   double **unforeseen = nullptr;
   // what brings a component of a local particle's velocity to a value
   struct Pull {

@@ -11,7 +11,8 @@ from scenes import WATER, Kernel, close, difference, differing, lammps, lattice,
 from fsi import dump, paths
 
 DX, C, G = 0.01, 20.0, 9.81
-MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500", syrup="fluid rho 1000 viscosity 50",
+MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", light="fluid rho 500",
+                      syrup="fluid rho 1000 viscosity 50",
                       as_stiff="fluid rho 1000 sound 14.142135623730951",
                       wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
 
