@@ -260,7 +260,7 @@ SCENES = [
      [f"{name}_re_100_14_to_40" for name in ("drag_max", "lift_max", "strouhal")]),
     ("cylinder_free", "28 around the cylinder | mean drag, lift, Strouhal number | {}, {}, {} |",
      sizes, [f"{name}_7_to_28" for name in ("drag", "lift", "strouhal")]),
-    ("cylinder_free", "lift is right to {} %, drag {} % too large, and the Strouhal number {} %",
+    ("cylinder_free", "lift is {} % and drag {} % too large, and the Strouhal number is right to {} %",
      figures, ["lift_7_to_28", "drag_7_to_28", "strouhal_7_to_28"]),
     ("cylinder_free", "Re = 100, 10 per diameter | mean drag | {} |", sizes, ["drag_10_across"]),
     ("cylinder_free", "Re = 200, 10 per diameter | mean drag | {} |", sizes, ["drag_re_200"]),
@@ -383,7 +383,7 @@ def test_rings_remain_symmetric():
 # places; closed forms and what others computed; what tests or reference data give; what follows
 # from numbers of the page. Nothing compares these.
 NOT_COMPARED = {
-    "beam": "1.7", "cylinder_free": "8", "dam_break": "0.267", "flexible_plate": "0.1",
+    "beam": "1.7", "cylinder_free": "7", "dam_break": "0.267", "flexible_plate": "0.1",
     "floating_flap": "1.4", "gate_static": "0.8",
     "lid_driven_cavity": "0.9063", "plate_crossflow": "14.7", "plate_damping": "0.04",
     "ring_annulus": "1.5 0.1", "rolling_tank": "1.4 0.8 1.5",
