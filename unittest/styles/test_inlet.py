@@ -888,3 +888,34 @@ def test_bad_input(tmp_path, name, change, message):
     result = lammps(tmp_path, text + "run 400\n", **FILES)
     assert result.status != 0 and any(re.search(message, line)
                                       for line in result.errors), result.output[-1500:]
+
+
+def test_a_pressure_may_follow_a_probe(tmp_path):
+    """A compute that an end's variable asks within the step, with no say in it, changes nothing."""
+    ends = []
+    for pressure in ("v_constant", "v_followed"):
+        text = f"""
+units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block -0.6 2.6 -0.6 1.6 -0.01 0.01
+create_box 1 box
+lattice sq 0.1 origin 0.5 0.5 0
+region channel block 0 2 0 1 INF INF units box
+create_atoms 1 region channel
+fsi/material oil fluid rho 1 viscosity 0.5
+pair_style fsi/fluid sound 10 background 4 tension yes laminar/visc
+pair_coeff * * NULL oil
+fix 1 all fsi 0.1 quintic 1.0
+fix 2 all fsi/wall/mirror ylo 0 slip no yhi 1 slip no
+compute flow all fsi/probe vx patch 1 0 0 1 1 0
+variable constant equal 4
+variable followed equal 4+0*c_flow
+fix in all fsi/inlet xlo 0 pressure 10
+fix out all fsi/outlet xhi 2 pressure {pressure}
+timestep 0.002
+run 60
+""" + watch(every=60) + "run 60\n"
+        ends.append(run(tmp_path / pressure, text).frames()[-1])
+    assert differing(*ends) == []
