@@ -285,7 +285,8 @@ VAIN = {
                                     "pair_style fsi/solid/tl"]),
     "watch on nobody": (world("fsi/fluid sound 10", 1, commands="group none type 2\n"
                               "fix watch none fsi/watch 10\nfix dt none fsi/dt 10"),
-                        ["Fix fsi/watch has nothing to act on: group none has no fluid and no solid",
+                        ["Fix fsi/watch has nothing to act on: group none has no fluid and no "
+                         "solid",
                          "Fix fsi/dt has nothing to act on: group none is empty"]),
     "nothing in vain": (
         world(HYBRID.format("artificial/visc 0.1 0 extrapolate yes", "artificial/stress 0.3"), 1,
