@@ -93,6 +93,9 @@ struct ImageArrays {
   const Mirror *mirror;
   int n;
   bool finite;    // may lines to images miss a wall?
+  // where particles and walls are in the step, and segments divide pairs, also of rates
+  AtomArrays::AT::t_kkfloat_1d_3_lr x;
+  WallRow dividing;
   double cutsq;
 };
 
@@ -116,12 +119,11 @@ struct Meetings {
   ImageArrays images;
 
   // calls pair(j) for those that no segment divides from i
-  template <int D, class Pair>
-  KOKKOS_FORCEINLINE_FUNCTION void for_pairs(int i, const Point<D> *point, Pair pair) const
+  template <class Pair> KOKKOS_FORCEINLINE_FUNCTION void for_pairs(int i, Pair pair) const
   {
     for (int jj = 0, n = numneigh(i); jj < n; jj++) {
       const int j = neighbors(i, jj) & NEIGHMASK;
-      if (!images.finite || !divided(point[i], point[j])) pair(j);
+      if (!images.finite || !divided(i, j)) pair(j);
     }
   }
   // calls pair(j, mirror, number of the reflection) for the images that i sees, also its own
@@ -135,19 +137,19 @@ struct Meetings {
       const Mirror mirror = images.mirror[k];
       for (int jj = -1, n = numneigh(i); jj < n; jj++) {
         const int j = jj < 0 ? i : neighbors(i, jj) & NEIGHMASK;
-        if ((images.near_walls[j] & s.mask) == s.mask && sees(s, point[i], point[j]))
+        if ((images.near_walls[j] & s.mask) == s.mask && sees(s, point[i], point[j]) &&
+            (!images.finite || !divided(i, j)))
           pair(j, mirror, k);
       }
     }
   }
 
  private:
-  template <int D>
-  KOKKOS_FORCEINLINE_FUNCTION bool divided(const Point<D> &i, const Point<D> &j) const
+  KOKKOS_FORCEINLINE_FUNCTION bool divided(int i, int j) const
   {
-    const double xi[3] = {i.x[0], i.x[1], D == 3 ? i.x[D - 1] : 0.0},
-                 xj[3] = {j.x[0], j.x[1], D == 3 ? j.x[D - 1] : 0.0};
-    return images.walls.divide(xi, xj);
+    const auto &x = images.x;
+    const double xi[3] = {x(i, 0), x(i, 1), x(i, 2)}, xj[3] = {x(j, 0), x(j, 1), x(j, 2)};
+    return images.dividing.divide(xi, xj);
   }
   template <int D>
   KOKKOS_FORCEINLINE_FUNCTION bool sees(const Reflection &s, const Point<D> &i,
@@ -201,7 +203,7 @@ template <class K, bool SUMS> struct RateLoop : FluidLoopKokkos<K> {
     const Point<D> *const point = this->points();
     const Particle<double, D> pi(point[i]);
     double sum = 0.0, flux = 0.0, by = 0.0;
-    this->for_pairs(i, point, [&](int j) {
+    this->for_pairs(i, [&](int j) {
       add<FLAGS>(i, pi, j, Particle<double, D>(point[j]), sum, flux, by);
     });
     this->for_images(i, point, [&](int j, const Mirror &mirror, int) {
@@ -257,7 +259,7 @@ template <class K, bool SUMS> struct ForceLoop : FluidLoopKokkos<K> {
     double force[D], rubbing[D];
     for (int d = 0; d < D; d++) force[d] = rubbing[d] = 0.0;
     Powers<double> by;
-    this->for_pairs(i, point, [&](int j) {
+    this->for_pairs(i, [&](int j) {
       double of_pair[D];
       if (!find<FLAGS>(artificial, viscous, i, pi, j, point[j], Mirror(), nullptr, of_pair,
                        SUMS ? rubbing : nullptr, by))

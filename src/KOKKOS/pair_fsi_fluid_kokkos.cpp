@@ -38,7 +38,7 @@ struct PairFSIFluidKokkos::Members {
   DeviceArray<double> points, rate, pressure_over_density, friction, gravity;
   DeviceArray<int> near_walls;
   DeviceArray<State> state;
-  DeviceArray<Wall> walls;
+  DeviceArray<Wall> walls, dividing;
   DeviceArray<Reflection> reflections;
   DeviceArray<Mirror> mirrors;
   std::vector<Mirror> mirrors_here;
@@ -129,12 +129,12 @@ void PairFSIFluidKokkos::find_near_walls()
   atomKK->sync(Device, X_MASK);
   const auto &walls = step->walls.wall;
   const int nall = atom->nlocal + atom->nghost;
-  to_device(walls.data(), walls.size(), kk->walls);
+  to_device(walls.data(), walls.size(), kk->dividing);
   to_device(step->walls.reflections.data(), step->walls.reflections.size(), kk->reflections);
   grow(kk->near_walls, nall);
   if (walls.empty()) return;
   const FindNearWalls find = {arrays(),
-                              {kk->walls.data(), static_cast<int>(walls.size())},
+                              {kk->dividing.data(), static_cast<int>(walls.size())},
                               disc->cut,
                               kk->near_walls.data()};
   Kokkos::parallel_for(Kokkos::RangePolicy<LMPDeviceType>(0, nall), find);
@@ -168,6 +168,8 @@ void PairFSIFluidKokkos::set_meetings(Meetings &m, const Walls &walls)
               kk->mirrors.data(),
               n,
               walls.finite(),
+              arrays().x,
+              {kk->dividing.data(), nwalls},
               disc->cut * disc->cut};
 }
 
