@@ -230,13 +230,15 @@ void FixFSIStream::post_force(int)
     const auto &[i, d, of_rate, to, v] = step->pulls[k];
     push(i, d, atom->rmass[i] * of_rate * (to - v) / force->ftm2v);
   }
-  if (!foreseen) velocity->evaluate_for(zone, 0, 3);
-  for (const auto &[i, weight] : zone)
-    for (int d = 0; !foreseen && weight > 0.0 && dt > 0.0 && d < 3; d++) {
-      if (!velocity->given(d)) continue;
+  if (!foreseen) {
+    velocity->evaluate_for(zone, 0, 3);
+    for (const auto &[i, weight] : zone) {
       const double part = -std::expm1(-rate * weight * dt);
-      push(i, d, atom->rmass[i] * part * (target(d, i) - atom->v[i][d]) / (dt * force->ftm2v));
+      for (int d = 0; part > 0.0 && d < 3; d++)
+        if (velocity->given(d))
+          push(i, d, atom->rmass[i] * part * (target(d, i) - atom->v[i][d]) / (dt * force->ftm2v));
     }
+  }
   ledger->tally(Ledger::FIELDS, -given[3]);
   if (update->ntimestep > update->firststep) work += dt * given[3];
 }

@@ -238,14 +238,16 @@ void Check::integrators() const
 {
   for (const auto &fix : modify->get_fix_list()) {
     if (!fix->time_integrate || utils::strmatch(fix->style, "^fsi")) continue;
-    const auto apart = find_particles(atom, world, [&](int i) {
-      return disc.state[atom->type[i]].species == RIGID && atom->mask[i] & fix->groupbit;
-    });
-    if (apart.count && !moves_as_a_whole(fix))
-      error->all(FLERR,
-                 "Fix {} (style {}) would take each of {} wall particles, the first of them atom "
-                 "{}, its own way: move walls with fix fsi/move or fix rigid",
-                 fix->id, fix->style, apart.count, apart.first);
+    if (!moves_as_a_whole(fix)) {
+      const auto apart = find_particles(atom, world, [&](int i) {
+        return disc.state[atom->type[i]].species == RIGID && atom->mask[i] & fix->groupbit;
+      });
+      if (apart.count)
+        error->all(FLERR,
+                   "Fix {} (style {}) would take each of {} wall particles, the first of them atom "
+                   "{}, its own way: move walls with fix fsi/move or fix rigid",
+                   fix->id, fix->style, apart.count, apart.first);
+    }
     const auto twice = find_particles(atom, world, [&](int i) {
       return atom->mask[i] & disc.mover->groupbit && atom->mask[i] & fix->groupbit;
     });

