@@ -25,6 +25,7 @@
 
 #include "fsi_classic_laws.h"
 #include "fsi_gradient.h"
+#include "fsi_kernel.h"
 #include "fsi_material.h"
 #include "fsi_pair_laws.h"
 #include "fsi_rows.h"
@@ -33,6 +34,31 @@
 #include <type_traits>
 
 namespace LAMMPS_NS::FSI {
+
+// Any kernel, by its kind, of which there is one text with all numbers side by side
+template <int D> struct PackedKernel {
+  static constexpr int DIM = D;
+  int kind;
+  Cubic<D> cubic;
+  Quintic<D> quintic;
+  Wendland<D> wendland;
+  double hinv;
+
+  PackedKernel(int kind_in, double h) :
+      kind(kind_in), cubic(h), quintic(h), wendland(h), hinv(1.0 / h)
+  {
+  }
+  template <class T> FSI_INLINE T W(const T &r) const
+  {
+    return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r);
+  }
+  template <class T> FSI_INLINE T gradient(const T &r) const
+  {
+    return kind == CUBIC  ? cubic.gradient(r)
+        : kind == QUINTIC ? quintic.gradient(r)
+                          : wendland.gradient(r);
+  }
+};
 
 constexpr int fours(int n)
 {

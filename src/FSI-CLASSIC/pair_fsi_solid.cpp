@@ -92,14 +92,22 @@ double PairFSISolid::artificial_stress() const
   return epsilon == 0.0 && disc->article ? 0.3 : epsilon;
 }
 
+// of loops pair by pair
+template <int D> using Single = ChosenKernelOf<D>;
+template <int D> auto PairFSISolid::single() const
+{
+  return Single<D>(disc->kernel, disc->h);
+}
+
 // calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops
 // are compiled for
 template <class F> void PairFSISolid::with_loops(F f) const
 {
-  const auto with = [&](const auto &kernel) {
-    constexpr int D = std::decay_t<decltype(kernel)>::DIM;
+  const auto with = [&](auto dim) {
+    constexpr int D = dim();
     const auto with_terms = [&](auto terms) {
-      packs ? f(std::true_type(), kernel, terms) : f(std::false_type(), kernel, terms);
+      packs ? f(std::true_type(), PackedKernel<D>(disc->kernel, disc->h), terms)
+            : f(std::false_type(), single<D>(), terms);
     };
     if (gradient == PLAIN)
       with_terms(std::integral_constant<int, 0>());
@@ -108,8 +116,7 @@ template <class F> void PairFSISolid::with_loops(F f) const
     else
       with_terms(std::integral_constant<int, D>());
   };
-  disc->dim == 2 ? with(AnyKernel<2>(disc->kernel, disc->h))
-                 : with(AnyKernel<3>(disc->kernel, disc->h));
+  disc->dim == 2 ? with(std::integral_constant<int, 2>()) : with(std::integral_constant<int, 3>());
 }
 
 template <bool PACKED> using Numbers = std::conditional_t<PACKED, Pack, double>;
@@ -297,15 +304,15 @@ template <int D, int TERMS> static void mirror_basis(const Mirror &m, double *si
 }
 
 // images are few: loops over them are pair by pair
-template <class K, int TERMS> void PairFSISolid::add_image_gradients(const K &kernel, double half)
+template <int D, int TERMS> void PairFSISolid::add_image_gradients(double half)
 {
-  constexpr int D = K::DIM, N = GradientSums<D, TERMS>::N, ROW = GradientSums<D, TERMS>::ROW;
+  constexpr int N = GradientSums<D, TERMS>::N, ROW = GradientSums<D, TERMS>::ROW;
   constexpr int COLUMNS = TERMS ? TERMS : D, MOMENTS = packed_size(TERMS);
   image_sums.assign((size_t) ROW * images.end(), 0.0);
   auto *const sums = reinterpret_cast<double(*)[ROW]>(image_sums.data());
   for (const RowList &list_ : own_images)
-    gradient_rows<double, K, TERMS>(list_.rows.data(), list_.rows.size(), kernel,
-                                    rate_records.data(), half, sums);
+    gradient_rows<double, Single<D>, TERMS>(list_.rows.data(), list_.rows.size(), single<D>(),
+                                            rate_records.data(), half, sums);
   for (int i = 0; i < atom->nlocal + atom->nghost; i++)
     for (int k = 0; k < N; k++) grad[i][k] += sums[i][k];
   images.for_each([&](int k, int of, const Mirror &m, bool counts) {
@@ -322,9 +329,9 @@ template <class K, int TERMS> void PairFSISolid::add_image_gradients(const K &ke
   });
 }
 
-template <class K, int TERMS> void PairFSISolid::add_image_hourglass(const K &kernel)
+template <int D, int TERMS> void PairFSISolid::add_image_hourglass()
 {
-  constexpr int D = K::DIM, ROW = GradientSums<D, TERMS>::ROW;
+  constexpr int ROW = GradientSums<D, TERMS>::ROW;
   const int nall = atom->nlocal + atom->nghost;
   image_sums.assign((size_t) ROW * images.end(), 0.0);
   std::copy_n(grad[0], (size_t) ROW * nall, image_sums.data());
@@ -334,23 +341,24 @@ template <class K, int TERMS> void PairFSISolid::add_image_hourglass(const K &ke
   });
   auto *const rate = reinterpret_cast<double(*)[row_of_forces(D)]>(hourglass_rate.data());
   for (const RowList &list_ : own_images)
-    hourglass_rows<double, K, ROW>(list_.rows.data(), list_.rows.size(), kernel,
-                                   rate_records.data(), image_sums.data(), Hourglass{xi}, rate);
+    hourglass_rows<double, Single<D>, ROW>(list_.rows.data(), list_.rows.size(), single<D>(),
+                                           rate_records.data(), image_sums.data(), Hourglass{xi},
+                                           rate);
   images.for_each([&](int k, int of, const Mirror &m, bool counts) {
     for (int d = 0; d < D && counts; d++) rate[of][d] += m.sign[d] * rate[k][d];
   });
 }
 
 // forces of images are folded when all are there
-template <int TERMS, int FLAGS, class K, class Laws>
-void PairFSISolid::add_image_forces(const K &kernel, Laws laws, const RowList (&lists)[2])
+template <int D, int TERMS, int FLAGS, class Laws>
+void PairFSISolid::add_image_forces(Laws laws, const RowList (&lists)[2])
 {
-  auto *const f = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(forces.data());
+  auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(forces.data());
   laws.type = types_with_images.data();
   for (const int half : {0, 1}) {
     laws.newton = !half;    // what counts by half, images being no local atoms
-    force_rows<double, K, TERMS, FLAGS>(lists[half].rows.data(), lists[half].rows.size(), kernel,
-                                        force_records.data(), laws, f);
+    force_rows<double, Single<D>, TERMS, FLAGS>(lists[half].rows.data(), lists[half].rows.size(),
+                                                single<D>(), force_records.data(), laws, f);
   }
 }
 
@@ -448,7 +456,7 @@ void PairFSISolid::velocity_gradient(double dt)
   if (own.rows.empty() && !images.any()) return;
   with_loops([&](auto packed, const auto &kernel, auto terms) {
     using K = std::decay_t<decltype(kernel)>;
-    if (images.any()) add_image_gradients<K, terms()>(kernel, 0.5 * dt);
+    if (images.any()) add_image_gradients<K::DIM, terms()>(0.5 * dt);
     auto *const sums = reinterpret_cast<double(*)[GradientSums<K::DIM, terms()>::ROW]>(grad[0]);
     run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
       gradient_rows<decltype(number), K, terms()>(own.rows.data(), own.rows.size(), kernel,
@@ -496,7 +504,7 @@ void PairFSISolid::advance_hourglass(double dt)
   if (!own.rows.empty() || images.any())
     with_loops([&](auto packed, const auto &kernel, auto terms) {
       using K = std::decay_t<decltype(kernel)>;
-      if (images.any()) add_image_hourglass<K, terms()>(kernel);
+      if (images.any()) add_image_hourglass<K::DIM, terms()>();
       auto *const rate = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(hourglass_rate.data());
       run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
         hourglass_rows<decltype(number), K, GradientSums<K::DIM, terms()>::ROW>(
@@ -625,14 +633,11 @@ void PairFSISolid::own_forces(const K &kernel, const PairLaws &laws, bool sums)
   using namespace SolidFlag;
   constexpr int D = K::DIM, ALL = VISCOSITY | STRESS | SUMS;
   auto *const of_rows = reinterpret_cast<double(*)[row_of_forces(D)]>(forces.data());
-  // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is
-  // off has coefficients of zero
-  const int named = (artificial_stress() > 0.0 ? STRESS : 0) | (sums ? SUMS : 0) |
-      (has_artificial() || sums || TERMS > D ? VISCOSITY : 0);
-  if (images.any()) add_image_forces<TERMS, ALL>(kernel, laws, own_images);
+  // pairs one by one with all effects, packs with viscosity: what is off has coefficients of zero
+  const int named = (artificial_stress() > 0.0 ? STRESS : 0) | (sums ? SUMS : 0) | VISCOSITY;
+  if (images.any()) add_image_forces<D, TERMS, ALL>(laws, own_images);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
-    if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)
-                         : flags() == ALL) {
+    if constexpr (PACKED ? flags() & VISCOSITY : flags() == ALL) {
       run_loop<Numbers<PACKED>>([&](auto number) FSI_INLINE_LAMBDA {
         force_rows<decltype(number), K, TERMS, flags()>(own.rows.data(), own.rows.size(), kernel,
                                                         force_records.data(), laws, of_rows);
@@ -660,12 +665,11 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
                          newton,
                          &sums};
   own_forces<PACKED, TERMS>(kernel, laws, ledger->kept || tally_pairs);
-  const AnyKernel<D> any(disc->kernel, disc->h);
   if (!others.rows.empty())
-    force_rows<double, AnyKernel<D>, TERMS, BETWEEN>(others.rows.data(), others.rows.size(), any,
-                                                     force_records.data(), laws, of_rows);
+    force_rows<double, Single<D>, TERMS, BETWEEN>(others.rows.data(), others.rows.size(),
+                                                  single<D>(), force_records.data(), laws, of_rows);
   if (images.any()) {
-    add_image_forces<TERMS, BETWEEN>(any, laws, other_images);
+    add_image_forces<D, TERMS, BETWEEN>(laws, other_images);
     images.fold<D>(of_rows, 1.0);
   }
 

@@ -103,10 +103,11 @@ class PairFSISolid : public PairFSI {
   std::vector<double> image_sums;
   void find_image_rows();
   void check_planes() const;
-  template <class K, int TERMS> void add_image_gradients(const K &, double half);
-  template <class K, int TERMS> void add_image_hourglass(const K &);
-  template <int TERMS, int FLAGS, class K, class Laws>
-  void add_image_forces(const K &, Laws, const FSI::RowList (&)[2]);
+  template <int D> auto single() const;
+  template <int D, int TERMS> void add_image_gradients(double half);
+  template <int D, int TERMS> void add_image_hourglass();
+  template <int D, int TERMS, int FLAGS, class Laws>
+  void add_image_forces(Laws, const FSI::RowList (&)[2]);
   std::vector<double> hourglass_rate, forces;    // local and ghost, rows of row_of_forces
   template <int D> void rotate_hourglass(double);
 

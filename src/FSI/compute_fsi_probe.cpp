@@ -350,10 +350,10 @@ void ComputeFSIProbe::add(const Place &place, const Source &of, double weight, d
 }
 
 // adds particles with this kernel near each place to its sums; at: points; mask: walls near them
-template <class K>
-void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &walls,
-                                const std::vector<double> &at, const std::vector<int> &mask)
+void ComputeFSIProbe::add_level(size_t level, const Walls &walls, const std::vector<double> &at,
+                                const std::vector<int> &mask)
 {
+  const ChosenKernel kernel(disc->kernel, disc->dim, disc->levels[level].h);
   Sight *const sight = disc->sight.get();
   const auto add_particle = [&](const Place &place, const Particle &p) {
     const int i = p.i, type = atom->type[i];
@@ -422,10 +422,7 @@ void ComputeFSIProbe::sum_up()
   const Walls &walls = step->walls;
   std::vector<double> at(points);
   const std::vector<int> mask = walls_near(walls, at);
-  for (size_t level = 0; level < disc->levels.size(); level++)
-    with_kernel(disc->kernel, disc->dim, disc->levels[level].h, [&](const auto &kernel) {
-      add_level(level, kernel, walls, at, mask);
-    });
+  for (size_t level = 0; level < disc->levels.size(); level++) add_level(level, walls, at, mask);
   MPI_Allreduce(sums.data(), all.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, world);
 }
 

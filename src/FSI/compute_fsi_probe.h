@@ -99,8 +99,7 @@ class ComputeFSIProbe : public Compute, public FSI::Part {
   template <class F> void for_images(int i, const Place &, double reach, F) const;
   std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;
   struct Source;
-  template <class K>
-  void add_level(size_t level, const K &, const FSI::Walls &, const std::vector<double> &at,
+  void add_level(size_t level, const FSI::Walls &, const std::vector<double> &at,
                  const std::vector<int> &mask);
   void add(const Place &, const Source &, double weight, double head, const double *v, double *sum);
   void sum_up();

@@ -908,13 +908,12 @@ static std::string list_effects(const Census &c, bool keeps_account)
   auto text = fmt::format(
       "FSI: {}, h = {:g} dx, dx = {:g}{}\n  on: {}\n  off (keyword that turns it on): {}\n",
       kernels[disc.kernel], disc.h / disc.dx, disc.dx, finer, on, off.empty() ? "none" : off);
-  if (c.fluids.style)
-    with_kernel(disc.kernel, disc.dim, disc.h, [&](const auto &k) {
-      const auto s = lattice_stiffness(k, disc.dx);
-      text += fmt::format("  a lattice of the fluid under a pressure p has a modulus of {:.3f} p "
-                          "when stretched, {:.3f} p in shear (a fluid: 0)\n",
-                          s.stretch, s.shear);
-    });
+  if (c.fluids.style) {
+    const auto s = lattice_stiffness(ChosenKernel(disc.kernel, disc.dim, disc.h), disc.dx);
+    text += fmt::format("  a lattice of the fluid under a pressure p has a modulus of {:.3f} p "
+                        "when stretched, {:.3f} p in shear (a fluid: 0)\n",
+                        s.stretch, s.shear);
+  }
   return text;
 }
 

@@ -57,12 +57,12 @@ class BondMaker : protected Pointers {
   void check_planes(const std::vector<int> &bare) const;
   template <int D> void bond_all(const std::vector<int> &bare);
   template <int D> void report(bigint *counts) const;
-  template <int D, class Kernel, class Weights>
-  int bond(int i, const Kernel &, const Cells &, const Weights &);
-  template <int D, class Kernel> void find_neighbors(int i, const Kernel &, const Cells &);
+  template <int D, class Weights>
+  int bond(int i, const ChosenKernel &, const Cells &, const Weights &);
+  template <int D> void find_neighbors(int i, const ChosenKernel &, const Cells &);
   template <int D> double measure(int i, int j, double cut, double *X) const;
-  template <int D, class Kernel> void find_images(int i, const Kernel &);
-  template <int D, class Kernel> void enter_bonds(int i, const Kernel &);
+  template <int D> void find_images(int i, const ChosenKernel &);
+  template <int D> void enter_bonds(int i, const ChosenKernel &);
 };
 }    // namespace
 
@@ -127,17 +127,16 @@ template <int D> void BondMaker::bond_all(const std::vector<int> &bare)
   const GradientWeights<D> weights;
   bigint counts[6] = {};    // particles, bonds, particles by order reached
   bonds.expect(bare.size());
-  for (const double h : all_h)
-    with_kernel(disc.kernel, D, h, [&](const auto &kernel) {
-      if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
-        for (const int i : bare) {
-          if (disc.h_of(type[i]) != h) continue;
-          const int order = bond<D>(i, kernel, solids, weights);
-          counts[0]++;
-          counts[1] += near.size();
-          counts[2 + order]++;
-        }
-    });
+  for (const double h : all_h) {
+    const ChosenKernel kernel(disc.kernel, D, h);
+    for (const int i : bare) {
+      if (disc.h_of(type[i]) != h) continue;
+      const int order = bond<D>(i, kernel, solids, weights);
+      counts[0]++;
+      counts[1] += near.size();
+      counts[2 + order]++;
+    }
+  }
   report<D>(counts);
 }
 
@@ -157,8 +156,8 @@ template <int D> void BondMaker::report(bigint *counts) const
 }
 
 // what its gradient is exact for
-template <int D, class Kernel, class Weights>
-int BondMaker::bond(int i, const Kernel &kernel, const Cells &solids, const Weights &weights)
+template <int D, class Weights>
+int BondMaker::bond(int i, const ChosenKernel &kernel, const Cells &solids, const Weights &weights)
 {
   find_neighbors<D>(i, kernel, solids);
   if (bonds.images.planes.any()) find_images<D>(i, kernel);
@@ -175,8 +174,8 @@ int BondMaker::bond(int i, const Kernel &kernel, const Cells &solids, const Weig
   return order;
 }
 
-template <int D, class Kernel>
-void BondMaker::find_neighbors(int i, const Kernel &kernel, const Cells &solids)
+template <int D>
+void BondMaker::find_neighbors(int i, const ChosenKernel &kernel, const Cells &solids)
 {
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const double cutsq = BondStore::WITHIN * kernel.cutsq;
@@ -231,7 +230,7 @@ template <int D> double BondMaker::measure(int i, int j, double cut, double *X) 
 }
 
 // likewise images of its neighbors and of itself in planes of symmetry
-template <int D, class Kernel> void BondMaker::find_images(int i, const Kernel &kernel)
+template <int D> void BondMaker::find_images(int i, const ChosenKernel &kernel)
 {
   double **x = atom->x;
   const Images &images = bonds.images;
@@ -258,7 +257,7 @@ template <int D, class Kernel> void BondMaker::find_images(int i, const Kernel &
   }
 }
 
-template <int D, class Kernel> void BondMaker::enter_bonds(int i, const Kernel &kernel)
+template <int D> void BondMaker::enter_bonds(int i, const ChosenKernel &kernel)
 {
   const int n = near.size();
   const double own = volume(i);

@@ -181,7 +181,7 @@ struct FluidPairs {
 
 struct RateLaws {
   double delta = 0.0;                               // of density diffusion; 0: none
-  const double *pressure_over_density = nullptr;    // per particle, with sums
+  const double *pressure_over_density = nullptr;    // per particle, with sums; or null
   double wdx = 0.0;                                 // W(dx), for shifting
   WallShift wall_shift;
   bool fills = false;    // shifting: the fluid has no surface

@@ -32,8 +32,8 @@ std::shared_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h,
   }
 #endif
   if (dim == 2)
-    return std::make_shared<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
-  return std::make_shared<FluidLoopsOf<double, AnyKernel<3>>>(AnyKernel<3>(kernel, h));
+    return std::make_shared<FluidLoopsOf<double, ChosenKernelOf<2>>>(ChosenKernelOf<2>(kernel, h));
+  return std::make_shared<FluidLoopsOf<double, ChosenKernelOf<3>>>(ChosenKernelOf<3>(kernel, h));
 }
 
 void FSI::no_such_loop(const char *what, int kind, int flags)

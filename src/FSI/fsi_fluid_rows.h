@@ -244,18 +244,21 @@ FSI_INLINE void distance_rows(const RowSpan rows, const Mirror mirror, const K k
 // not here is an error of whoever asks for it (no_such_loop).
 struct Compiled {
   int kind, always, maybe;
-  enum Numbers { ANY, ONE_BY_ONE, PACKS } numbers = ANY;
 };
 namespace Flag {
   constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
 
-  // Density diffusion, with a coefficient of zero where it is off, comes with what is rarely
-  // without: images and slopes. Where shifting fades all rows are in the loops of unequal ones,
-  // as images of solids are, of which there are few. Walls and solids are one kind.
+  // Pair by pair (SINGLE) there is one loop for all effects: those that are off have coefficients
+  // of zero, and neighbors of the same spacing ratios that change nothing. What thin bodies hide
+  // in part is visited in these alone.
+  //
+  // Of several pairs at a time (PACKED) density diffusion comes with what is rarely without: images
+  // and slopes. Where shifting fades all rows are in the loops of unequal ones, as images of
+  // solids are, of which there are few. Walls and solids are one kind.
   struct RatesTable {
     static constexpr int FLAGS =
         IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY | EDGES | FADES;
-    static constexpr Compiled ROWS[] = {
+    static constexpr Compiled PACKED[] = {
         {WITH_SOLID, 0, 0},
         {WITH_SOLID, UNEQUAL, IMAGES},
         {WITH_SOLID, SHIFT, 0},
@@ -266,47 +269,60 @@ namespace Flag {
         {WITH_SOLID, SHIFT | EDGES | UNEQUAL | FADES, IMAGES},
         {WITH_FLUID, 0, 0},
         {WITH_FLUID, SHIFT | EDGES, 0},
-        {WITH_FLUID, DIFFUSION, SUMS | IMAGES | PARTLY},
-        {WITH_FLUID, DIFFUSION | SHIFT | EDGES, SUMS | IMAGES | PARTLY},
-        {WITH_FLUID, DIFFUSION | SHIFT | SLOPES, SUMS | IMAGES | PARTLY},
+        {WITH_FLUID, DIFFUSION, SUMS | IMAGES},
+        {WITH_FLUID, DIFFUSION | SHIFT | EDGES, SUMS | IMAGES},
+        {WITH_FLUID, DIFFUSION | SHIFT | SLOPES, SUMS | IMAGES},
+        {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL, IMAGES},
+        {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | EDGES, IMAGES},
+        {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | SLOPES, IMAGES},
+    };
+    static constexpr Compiled SINGLE[] = {
+        {WITH_SOLID, UNEQUAL, IMAGES},
+        {WITH_SOLID, SHIFT | UNEQUAL, IMAGES | EDGES | FADES},
         {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL, IMAGES | PARTLY},
-        {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | EDGES, IMAGES | PARTLY},
-        {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | FADES | SHIFT | SLOPES, IMAGES | PARTLY},
+        {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | SHIFT | EDGES, IMAGES | PARTLY | FADES},
+        {WITH_FLUID, DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES, IMAGES | PARTLY | FADES},
     };
   };
 
-  // With sums, images, neighbors of another spacing, both viscosities, the central one, or pair
-  // by pair there is one loop for all effects: those that are off have coefficients of zero.
-  // Images of another spacing, and of walls of particles, are few: their sums may be for nothing.
+  // With sums, images, neighbors of another spacing, both viscosities, or the central one there is
+  // one loop for all effects. Images of another spacing, and of walls of particles, are few: their
+  // sums may be for nothing.
   struct ForcesTable {
     static constexpr int FLAGS = EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY | VARIES;
-    static constexpr Compiled ROWS[] = {
-        {WITH_FLUID, 0, 0, Compiled::PACKS},
-        {WITH_FLUID, ARTIFICIAL, 0, Compiled::PACKS},
-        {WITH_FLUID, LAMINAR, 0, Compiled::PACKS},
+    static constexpr Compiled PACKED[] = {
+        {WITH_FLUID, 0, 0},
+        {WITH_FLUID, ARTIFICIAL, 0},
+        {WITH_FLUID, LAMINAR, 0},
         {WITH_FLUID, EFFECTS, SUMS | IMAGES},
-        {WITH_FLUID, EFFECTS | UNEQUAL | SUMS, IMAGES},
-        {WITH_FLUID, EFFECTS | PARTLY | SUMS, IMAGES | UNEQUAL},
-        {WITH_FLUID, EFFECTS | UNEQUAL | SUMS | VARIES, IMAGES},
-        {WITH_FLUID, EFFECTS | UNEQUAL | SUMS | VARIES | PARTLY, IMAGES},
-        {WITH_SOLID, 0, 0, Compiled::PACKS},
-        {WITH_SOLID, ARTIFICIAL, 0, Compiled::PACKS},
-        {WITH_SOLID, LAMINAR, 0, Compiled::PACKS},
+        {WITH_FLUID, EFFECTS | UNEQUAL | SUMS, IMAGES | VARIES},
+        {WITH_SOLID, 0, 0},
+        {WITH_SOLID, ARTIFICIAL, 0},
+        {WITH_SOLID, LAMINAR, 0},
         {WITH_SOLID, EFFECTS, SUMS | IMAGES},
         {WITH_SOLID, EFFECTS | UNEQUAL, SUMS},
         {WITH_SOLID, EFFECTS | UNEQUAL | SUMS, IMAGES},
-        {WITH_WALL, 0, 0, Compiled::PACKS},
-        {WITH_WALL, ARTIFICIAL, 0, Compiled::PACKS},
-        {WITH_WALL, LAMINAR, 0, Compiled::PACKS},
+        {WITH_WALL, 0, 0},
+        {WITH_WALL, ARTIFICIAL, 0},
+        {WITH_WALL, LAMINAR, 0},
         {WITH_WALL, EFFECTS, SUMS | UNEQUAL},
         {WITH_WALL, EFFECTS | SUMS | UNEQUAL | IMAGES, 0},
-        {WITH_SOLID_FULL, EFFECTS | SUMS, IMAGES, Compiled::ONE_BY_ONE},
+    };
+    static constexpr Compiled SINGLE[] = {
+        {WITH_FLUID, EFFECTS | UNEQUAL | SUMS, IMAGES | PARTLY | VARIES},
+        {WITH_SOLID, EFFECTS | UNEQUAL | SUMS, IMAGES},
+        {WITH_WALL, EFFECTS | UNEQUAL | SUMS, IMAGES},
+        {WITH_SOLID_FULL, EFFECTS | SUMS, IMAGES},
     };
   };
 
   struct ShiftsTable {
     static constexpr int FLAGS = IMAGES | BOTH | PARTLY;
-    static constexpr Compiled ROWS[] = {
+    static constexpr Compiled PACKED[] = {
+        {WITH_FLUID, BOTH, IMAGES},
+        {WITH_SOLID, 0, IMAGES},
+    };
+    static constexpr Compiled SINGLE[] = {
         {WITH_FLUID, BOTH, IMAGES | PARTLY},
         {WITH_SOLID, 0, IMAGES},
     };
@@ -314,23 +330,21 @@ namespace Flag {
 
   struct DistancesTable {
     static constexpr int FLAGS = DIVERGENCE | IMAGES | BOTH | UNEQUAL | PARTLY;
-    static constexpr Compiled ROWS[] = {
+    static constexpr Compiled PACKED[] = {
         {WITH_FLUID, 0, IMAGES | BOTH | UNEQUAL},
         {WITH_FLUID, DIVERGENCE, IMAGES | BOTH},
-        {WITH_FLUID, BOTH | PARTLY, IMAGES | UNEQUAL},
-        {WITH_FLUID, BOTH | PARTLY | DIVERGENCE, IMAGES},
+    };
+    static constexpr Compiled SINGLE[] = {
+        {WITH_FLUID, UNEQUAL, IMAGES | BOTH | PARTLY},
+        {WITH_FLUID, DIVERGENCE, IMAGES | BOTH | PARTLY},
     };
   };
 }    // namespace Flag
 
-// What thin bodies hide in part is visited pair by pair.
-template <size_t N>
-constexpr bool is_compiled(const Compiled (&table)[N], int kind, int flags, bool one_by_one)
+template <size_t N> constexpr bool is_compiled(const Compiled (&table)[N], int kind, int flags)
 {
-  if ((flags & Flag::PARTLY) && !one_by_one) return false;
   for (const Compiled &c : table)
-    if (c.kind == kind && (flags & c.always) == c.always && !(flags & ~(c.always | c.maybe)) &&
-        (c.numbers == Compiled::ANY || (c.numbers == Compiled::ONE_BY_ONE) == one_by_one))
+    if (c.kind == kind && (flags & c.always) == c.always && !(flags & ~(c.always | c.maybe)))
       return true;
   return false;
 }
@@ -339,6 +353,11 @@ constexpr bool is_compiled(const Compiled (&table)[N], int kind, int flags, bool
 template <class T, class K> class FluidLoopsOf : public FluidLoops {
   static constexpr int D = K::DIM;
   static constexpr bool ONE_BY_ONE = std::is_same_v<T, double>;
+  template <class Table> static constexpr bool has(int kind, int flags)
+  {
+    if constexpr (ONE_BY_ONE) return is_compiled(Table::SINGLE, kind, flags);
+    return is_compiled(Table::PACKED, kind, flags);
+  }
   const K kernel;
 
  public:
@@ -349,7 +368,7 @@ template <class T, class K> class FluidLoopsOf : public FluidLoops {
   {
     if (near) near->clear();
     PairSums unused;
-    if (pairs.in.unlike && !sums) sums = &unused;
+    if ((ONE_BY_ONE || pairs.in.unlike) && !sums) sums = &unused;
     run(pairs.kind == WITH_FLUID ? WITH_FLUID : WITH_SOLID,
         flags_of_rates(pairs, laws, shift, sums), pairs, "rates", Flag::RatesTable(),
         [&](auto number, const Mirror &mirror, auto kind, auto flags) FSI_INLINE_LAMBDA {
@@ -369,8 +388,7 @@ template <class T, class K> class FluidLoopsOf : public FluidLoops {
         : varies             ? Flag::UNEQUAL | Flag::VARIES
                              : unequal_flag(pairs, pairs.kind == WITH_WALL && pairs.mirror);
     PairSums unused;
-    const bool counted = full || pairs.in.visible.part ||
-        (unequal && (varies || pairs.in.unlike || pairs.mirror));
+    const bool counted = ONE_BY_ONE || (unequal && (varies || pairs.in.unlike || pairs.mirror));
     if (!sums && counted) sums = &unused;
     run(pairs.kind, flags_of_forces(pairs, unequal, laws, sums), pairs, "forces",
         Flag::ForcesTable(),
@@ -415,7 +433,7 @@ template <class T, class K> class FluidLoopsOf : public FluidLoops {
     const Mirror mirror = pairs.mirror ? *pairs.mirror : Mirror();
     with_flags<Table::FLAGS>(named, [&](auto flags) {
       const auto with_kind = [&](auto kind_is) {
-        if constexpr (is_compiled(Table::ROWS, kind_is(), flags(), ONE_BY_ONE)) {
+        if constexpr (has<Table>(kind_is(), flags())) {
           if (kind != kind_is()) return;
           ran = true;
           run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
@@ -444,7 +462,7 @@ template <class T, class K> class FluidLoopsOf : public FluidLoops {
   {
     const FluidParticles &in = pairs.in;
     const bool of_solids = pairs.kind != WITH_FLUID && (in.unequal || in.cut || images);
-    return in.unlike || of_solids ? Flag::UNEQUAL : 0;
+    return ONE_BY_ONE || in.unlike || of_solids ? Flag::UNEQUAL : 0;
   }
 
   static int flags_of_rates(const FluidPairs &pairs, const RateLaws &laws, const double *shift,
@@ -452,8 +470,8 @@ template <class T, class K> class FluidLoopsOf : public FluidLoops {
   {
     using namespace Flag;
     const bool fluid = pairs.kind == WITH_FLUID, images = pairs.mirror,
-               diffuses = pairs.in.visible.part ||
-        (fluid && (laws.delta > 0.0 || (shift && laws.fills) || images || pairs.in.unlike));
+               diffuses = fluid &&
+        (ONE_BY_ONE || laws.delta > 0.0 || (shift && laws.fills) || images || pairs.in.unlike);
     const int shifting = !shift ? 0 : !laws.fills ? SHIFT | EDGES : fluid ? SHIFT | SLOPES : SHIFT;
     return flags_of(pairs) | shifting | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0) |
         (shift && pairs.in.fade ? FADES : 0) | unequal_flag(pairs, images);

@@ -287,7 +287,7 @@ FSI_INLINE void tally_coming_out(const Row &row, const Mirror &mirror, const K &
 {
   constexpr int D = K::DIM;
   using L = Lanes<T>;
-  if (!in.cut || !sums || !(in.newton || row.i < in.nlocal)) return;
+  if (!in.cut || !sums || !laws.pressure_over_density || !(in.newton || row.i < in.nlocal)) return;
   const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
   const Point<D> &p = point[row.i];
   const Particle<T, D> pi(p);
@@ -346,7 +346,8 @@ FSI_INLINE void diffuse(const FluidParticles &in, const RateLaws &laws,
   const T k = lesser(pi.p, pj.p) * constant.diffusion(pi.rho, pj.rho, pi.pv2 - pj.pv2, g);
   flux += k * pj.vol;
   rate_j -= k * pi.vol;
-  if (FLAGS & Flag::SUMS)
+  constexpr bool SINGLE = std::is_same_v<T, double>;    // these loops have sums that none asks for
+  if ((FLAGS & Flag::SUMS) && (!SINGLE || laws.pressure_over_density))
     by -= share_of<T>(i, j, in.nlocal, in.newton) * k * pi.vol * pj.vol *
         (T(laws.pressure_over_density[i]) - Lanes<T>::read(laws.pressure_over_density, j));
 }

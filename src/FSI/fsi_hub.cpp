@@ -48,19 +48,16 @@ void Discretization::resolve(const std::vector<double> &spacing)
     Resolution r;
     r.dx = own;
     r.h = hdx * own;
-    with_kernel(kernel, dim, r.h, [&](const auto &k) {
-      r.cut = k.cut;
-      r.psi_bulk = lattice_number_density(k, own);
-      r.wdx = k.W(own);
-      r.w0 = k.W(0.0);
-    });
+    const ChosenKernel k(kernel, dim, r.h);
+    r.cut = k.cut;
+    r.psi_bulk = lattice_number_density(k, own);
+    r.wdx = k.W(own);
+    r.w0 = k.W(0.0);
     return r;
   };
   const Resolution fluid = resolution_of(dx);
   static_cast<Resolution &>(*this) = fluid;
-  with_kernel(kernel, dim, hdx, [this](const auto &k) {
-    central_length_sq = FSI::central_length_sq(k, 1.0) / (k.h * k.h);
-  });
+  central_length_sq = FSI::central_length_sq(ChosenKernel(kernel, dim, hdx), 1.0) / (hdx * hdx);
   largest_cut = cut;
   levels = {fluid};
   level_of.assign(spacing.size(), 0);

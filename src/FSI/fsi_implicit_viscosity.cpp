@@ -96,43 +96,42 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const FluidPairs &pairs,
     for (int d = 0; d < D; d++) block.sign[d] = image.rubbing_sign[d];
     blocks.push_back(block);
   }
-  with_kernel(disc.kernel, D, set.h, [&](const auto &kernel) {
-    for (const Row &row : pairs.rows)
-      for (const int *j = row.j; j < row.j + row.n; j++) {
-        const Point<D> &pi = point[row.i], &pj = point[*j];
-        double x[D];
-        places_apart<true>(image, pi.x, pj.x, x);
-        const State &of_i = in.state[in.type[row.i]], &of_j = in.state[in.type[*j]];
-        double g = -kernel.gradient(std::sqrt(FSI::product(x, x))) * pi.rho * pi.vol *
-            of_i.inv_rho0 * pj.vol;
-        if (of_j.species != SOLID) g *= pj.rho * of_j.inv_rho0;    // as in explicit forces
-        if (pairs.mirror && *j == row.i) g *= 0.5;    // it is seen from both sides of the pair
-        if (in.visible.part) g = as_visible(in, j, g);
-        if (fluids) {
-          const double both = 2.0 * g * between(viscosity(row.i), viscosity(*j));
-          k.push_back(both);
-          for (int d = 0; d < D; d++) {
-            const double u = both * image.rubbing_v[d];
-            for (const int a : {row.i, *j}) {
-              diagonal[D * a + d] += both;
-              given[D * a + d] += u;
-            }
-          }
-          continue;
-        }
-        if (of_j.species == RIGID && !of_j.noslip) continue;
-        const double of_face =
-            2.0 * cut_off(in, j, g) * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
-        const bool thin = in.ratio[in.type[*j]].thin;
+  const ChosenKernel kernel(disc.kernel, D, set.h);
+  for (const Row &row : pairs.rows)
+    for (const int *j = row.j; j < row.j + row.n; j++) {
+      const Point<D> &pi = point[row.i], &pj = point[*j];
+      double x[D];
+      places_apart<true>(image, pi.x, pj.x, x);
+      const State &of_i = in.state[in.type[row.i]], &of_j = in.state[in.type[*j]];
+      double g = -kernel.gradient(std::sqrt(FSI::product(x, x))) * pi.rho * pi.vol * of_i.inv_rho0 *
+          pj.vol;
+      if (of_j.species != SOLID) g *= pj.rho * of_j.inv_rho0;    // as in explicit forces
+      if (pairs.mirror && *j == row.i) g *= 0.5;    // it is seen from both sides of the pair
+      if (in.visible.part) g = as_visible(in, j, g);
+      if (fluids) {
+        const double both = 2.0 * g * between(viscosity(row.i), viscosity(*j));
+        k.push_back(both);
         for (int d = 0; d < D; d++) {
-          const double sign = image.rubbing_sign[d], own = image.slip_sign[d];
-          const double beyond = thin ? 2.0 * atom->v[*j][d] - image.slip_v[d]
-                                     : laws.wall_velocity[*j][d] + own * laws.before[row.i][d];
-          diagonal[D * row.i + d] += of_face * (1.0 + sign * own);
-          given[D * row.i + d] += of_face * (sign * beyond + image.rubbing_v[d]);
+          const double u = both * image.rubbing_v[d];
+          for (const int a : {row.i, *j}) {
+            diagonal[D * a + d] += both;
+            given[D * a + d] += u;
+          }
         }
+        continue;
       }
-  });
+      if (of_j.species == RIGID && !of_j.noslip) continue;
+      const double of_face =
+          2.0 * cut_off(in, j, g) * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
+      const bool thin = in.ratio[in.type[*j]].thin;
+      for (int d = 0; d < D; d++) {
+        const double sign = image.rubbing_sign[d], own = image.slip_sign[d];
+        const double beyond = thin ? 2.0 * atom->v[*j][d] - image.slip_v[d]
+                                   : laws.wall_velocity[*j][d] + own * laws.before[row.i][d];
+        diagonal[D * row.i + d] += of_face * (1.0 + sign * own);
+        given[D * row.i + d] += of_face * (sign * beyond + image.rubbing_v[d]);
+      }
+    }
 }
 
 // y = A x of local particles; x gets its ghosts

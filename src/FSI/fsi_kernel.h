@@ -27,6 +27,7 @@
 #include "math_const.h"
 
 #include <cmath>
+#include <variant>
 
 namespace LAMMPS_NS::FSI {
 
@@ -34,7 +35,7 @@ enum KernelKind { CUBIC, QUINTIC, WENDLAND };
 
 // base: normalization and scaling shared by all shapes
 template <int D, class Shape> struct Kernel : Shape {
-  static constexpr int DIM = D;
+  static constexpr int DIM = D, dim = D;
   double h, hinv, cut, cutsq;
   double norm;     // W(r) = norm w(q)            [1/length^D]
   double gnorm;    // grad_i W = gnorm dwq(q) x_ij
@@ -180,57 +181,74 @@ inline double kernel_support(int kind)
   return kind == QUINTIC ? QuinticShape::support : 2.0;
 }
 
-// Any of them, by its kind: for loops that need not be fast, of which there is then one.
-template <int D> struct AnyKernel {
-  static constexpr int DIM = D;
-  int kind;
-  Cubic<D> cubic;
-  Quintic<D> quintic;
-  Wendland<D> wendland;
-  double h, hinv, cut, cutsq;
+// Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
+template <class F> auto with_kernel(int kind, int dim, double h, F &&f)
+{
+  if (dim == 2)
+    return kind == CUBIC ? f(Cubic<2>(h)) : kind == QUINTIC ? f(Quintic<2>(h)) : f(Wendland<2>(h));
+  return kind == CUBIC ? f(Cubic<3>(h)) : kind == QUINTIC ? f(Quintic<3>(h)) : f(Wendland<3>(h));
+}
 
-  AnyKernel(int kind_in, double h_in) :
-      kind(kind_in), cubic(h_in), quintic(h_in), wendland(h_in), h(h_in), hinv(1.0 / h_in),
-      cut(kernel_support(kind_in) * h_in), cutsq(cut * cut)
+// A kernel chosen at run time, for sums of which one text is enough. Its functions are not inlined:
+// that would be six texts again.
+class ChosenKernel {
+  using Choice = std::variant<Cubic<2>, Cubic<3>, Quintic<2>, Quintic<3>, Wendland<2>, Wendland<3>>;
+  const Choice choice;
+  template <class F> double of(F &&f) const { return std::visit(f, choice); }
+
+ public:
+  const int dim;
+  const double h, hinv, cut, cutsq;
+
+  ChosenKernel(int kind, int dim_in, double h_in) :
+      choice(with_kernel(kind, dim_in, h_in,
+                         [](const auto &kernel) {
+                           return Choice(kernel);
+                         })),
+      dim(dim_in), h(h_in), hinv(1.0 / h), cut(kernel_support(kind) * h), cutsq(cut * cut)
   {
   }
-  template <class T> FSI_INLINE T W(const T &r) const
+  FSI_OUTLINE double W(double r) const
   {
-    return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r);
+    return of([=](const auto &kernel) {
+      return kernel.W(r);
+    });
   }
-  template <class T> FSI_INLINE T gradient(const T &r) const
+  FSI_OUTLINE double gradient(double r) const
   {
-    return kind == CUBIC  ? cubic.gradient(r)
-        : kind == QUINTIC ? quintic.gradient(r)
-                          : wendland.gradient(r);
+    return of([=](const auto &kernel) {
+      return kernel.gradient(r);
+    });
   }
-  template <class T> FSI_INLINE void both(const T &r, T &w, T &g) const
+  FSI_OUTLINE double curvature(double r) const
+  {
+    return of([=](const auto &kernel) {
+      return kernel.curvature(r);
+    });
+  }
+  FSI_OUTLINE double sharper(double r, double e) const
+  {
+    return of([=](const auto &kernel) {
+      return kernel.sharper(r, e);
+    });
+  }
+  FSI_OUTLINE double sharper_gradient(double r, double e) const
+  {
+    return of([=](const auto &kernel) {
+      return kernel.sharper_gradient(r, e);
+    });
+  }
+  void both(double r, double &w, double &g) const
   {
     w = W(r);
     g = gradient(r);
   }
-  double sharper(double r, double e) const
-  {
-    return kind == CUBIC  ? cubic.sharper(r, e)
-        : kind == QUINTIC ? quintic.sharper(r, e)
-                          : wendland.sharper(r, e);
-  }
-  double sharper_gradient(double r, double e) const
-  {
-    return kind == CUBIC  ? cubic.sharper_gradient(r, e)
-        : kind == QUINTIC ? quintic.sharper_gradient(r, e)
-                          : wendland.sharper_gradient(r, e);
-  }
 };
-
-// Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
-template <class F> void with_kernel(int kind, int dim, double h, F &&f)
-{
-  if (dim == 2)
-    kind == CUBIC ? f(Cubic<2>(h)) : kind == QUINTIC ? f(Quintic<2>(h)) : f(Wendland<2>(h));
-  else
-    kind == CUBIC ? f(Cubic<3>(h)) : kind == QUINTIC ? f(Quintic<3>(h)) : f(Wendland<3>(h));
-}
+// for loops that are compiled by dimension
+template <int D> struct ChosenKernelOf : ChosenKernel {
+  static constexpr int DIM = D;
+  ChosenKernelOf(int kind, double h) : ChosenKernel(kind, D, h) {}
+};
 
 // sum_j W_ij of a particle inside an infinite square (2D) or simple cubic (3D) lattice of spacing
 // dx, self included
@@ -238,7 +256,7 @@ template <class K> double lattice_number_density(const K &kernel, double dx)
 {
   const int n = static_cast<int>(kernel.cut / dx) + 1;
   double psi = 0.0;
-  for (int k = (K::DIM == 3 ? -n : 0); k <= (K::DIM == 3 ? n : 0); k++)
+  for (int k = (kernel.dim == 3 ? -n : 0); k <= (kernel.dim == 3 ? n : 0); k++)
     for (int j = -n; j <= n; j++)
       for (int i = -n; i <= n; i++) psi += kernel.W(dx * std::sqrt(double(i * i + j * j + k * k)));
   return psi;
@@ -250,7 +268,7 @@ template <class K> double lattice_number_density(const K &kernel, double dx)
 template <class K> double central_length_sq(const K &kernel, double dx)
 {
   constexpr int PLACES = 16;
-  const int n = static_cast<int>(kernel.cut / dx) + 1, nz = K::DIM == 3 ? n : 0;
+  const int n = static_cast<int>(kernel.cut / dx) + 1, nz = kernel.dim == 3 ? n : 0;
   double sum = 0.0;
   for (int k = -nz; k <= nz; k++)
     for (int j = -n; j <= n; j++)
@@ -258,7 +276,7 @@ template <class K> double central_length_sq(const K &kernel, double dx)
         const double x = i * dx / PLACES, y = j * dx, z = k * dx;
         sum -= kernel.gradient(std::sqrt(x * x + y * y + z * z)) * x * x * y * y;
       }
-  return (K::DIM + 2) * sum / (PLACES * lattice_number_density(kernel, dx));
+  return (kernel.dim + 2) * sum / (PLACES * lattice_number_density(kernel, dx));
 }
 
 // The elasticity that a lattice of fluid particles has and the fluid has not (doc/notes/fluid.md):
@@ -275,7 +293,7 @@ struct LatticeStiffness {
 template <class K> LatticeStiffness lattice_stiffness(const K &kernel, double dx)
 {
   const double psi = lattice_number_density(kernel, dx);
-  const int n = static_cast<int>(kernel.cut / dx) + 1, nz = K::DIM == 3 ? n : 0;
+  const int n = static_cast<int>(kernel.cut / dx) + 1, nz = kernel.dim == 3 ? n : 0;
   LatticeStiffness s;
   for (int k = -nz; k <= nz; k++)
     for (int j = -n; j <= n; j++)

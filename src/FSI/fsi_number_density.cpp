@@ -126,26 +126,24 @@ static constexpr double EDGE = 100.0;
 // sums over the planes of a lattice that are missing
 void SurfaceDeficit::find_layers()
 {
-  with_kernel(disc.kernel, disc.dim, disc.h / disc.dx, [this](const auto &k) {
-    constexpr int D = std::decay_t<decltype(k)>::DIM;
-    const double psi = lattice_number_density(k, 1.0);
-    const int n = static_cast<int>(k.cut) + 1;
-    double s = 0.0, missing = 0.0;
-    layers = {{0.0, 0.0}};
-    for (int z = n; z > 0; z--) {
-      double w = 0.0, g = 0.0;
-      for (int y = (D == 3 ? -n : 0); y <= (D == 3 ? n : 0); y++)
-        for (int x = -n; x <= n; x++) {
-          const double r = std::sqrt(double(x * x + y * y + z * z));
-          if (r >= k.cut) continue;
-          w += k.W(r);
-          g -= k.gradient(r) * z;
-        }
-      missing += w / psi;
-      s += k.h * g / psi;
-      if (w > 0.0) layers.emplace_back(s, missing);
-    }
-  });
+  const ChosenKernel k(disc.kernel, disc.dim, disc.h / disc.dx);
+  const double psi = lattice_number_density(k, 1.0);
+  const int n = static_cast<int>(k.cut) + 1;
+  double s = 0.0, missing = 0.0;
+  layers = {{0.0, 0.0}};
+  for (int z = n; z > 0; z--) {
+    double w = 0.0, g = 0.0;
+    for (int y = (k.dim == 3 ? -n : 0); y <= (k.dim == 3 ? n : 0); y++)
+      for (int x = -n; x <= n; x++) {
+        const double r = std::sqrt(double(x * x + y * y + z * z));
+        if (r >= k.cut) continue;
+        w += k.W(r);
+        g -= k.gradient(r) * z;
+      }
+    missing += w / psi;
+    s += k.h * g / psi;
+    if (w > 0.0) layers.emplace_back(s, missing);
+  }
 }
 
 // linear between layers; beyond the first one, at edges, as between the last two

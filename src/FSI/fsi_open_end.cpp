@@ -640,31 +640,30 @@ void PlaneFit::measure()
   const int nfit = plane ? 6 : 3, nmoment = plane ? 15 : 5;
   nbounds = nmoment + nfit * (wants_velocity + wants_pressure);
   nodes.begin(nbounds, wants_velocity ? 2 : 0);
-  with_kernel(disc.kernel, disc.dim, disc.h, [&](const auto &kernel) {
-    for (const auto &place : end.places) {
-      const double away = wants_pressure ? place.inside : std::fabs(place.inside - end.length);
-      if (place.inside <= 0.0 || away >= disc.cut) continue;
-      const double u = atom->v[place.i][end.axis], p = place.pressure;
-      const auto add_to = [&](int node, const double *d) {
-        const double r = std::sqrt(std::min(away * away + d[0] * d[0] + d[1] * d[1], kernel.cutsq)),
-                     W = kernel.W(r);
-        const double y[] = {d[0] / disc.dx, d[1] / disc.dx};
-        double f[15] = {W};
-        times_monomials(plane, y, f);
-        double *c = &nodes.sums_given[(size_t) node * nodes.row()];
-        if (wants_velocity && std::fabs(y[0]) <= NEXT && std::fabs(y[1]) <= NEXT) {
-          c[nbounds] = std::max(c[nbounds], u);
-          c[nbounds + 1] = std::max(c[nbounds + 1], -u);
-        }
-        for (int a = 0; a < nmoment; a++) *c++ += f[a];
-        if (wants_velocity)
-          for (int a = 0; a < nfit; a++) *c++ += f[a] * u;
-        if (wants_pressure)
-          for (int a = 0; a < nfit; a++) *c++ += f[a] * p;
-      };
-      nodes.at(nodes.given, atom->x[place.i], std::sqrt(kernel.cutsq - away * away), add_to);
-    }
-  });
+  const ChosenKernel kernel(disc.kernel, disc.dim, disc.h);
+  for (const auto &place : end.places) {
+    const double away = wants_pressure ? place.inside : std::fabs(place.inside - end.length);
+    if (place.inside <= 0.0 || away >= disc.cut) continue;
+    const double u = atom->v[place.i][end.axis], p = place.pressure;
+    const auto add_to = [&](int node, const double *d) {
+      const double r = std::sqrt(std::min(away * away + d[0] * d[0] + d[1] * d[1], kernel.cutsq)),
+                   W = kernel.W(r);
+      const double y[] = {d[0] / disc.dx, d[1] / disc.dx};
+      double f[15] = {W};
+      times_monomials(plane, y, f);
+      double *c = &nodes.sums_given[(size_t) node * nodes.row()];
+      if (wants_velocity && std::fabs(y[0]) <= NEXT && std::fabs(y[1]) <= NEXT) {
+        c[nbounds] = std::max(c[nbounds], u);
+        c[nbounds + 1] = std::max(c[nbounds + 1], -u);
+      }
+      for (int a = 0; a < nmoment; a++) *c++ += f[a];
+      if (wants_velocity)
+        for (int a = 0; a < nfit; a++) *c++ += f[a] * u;
+      if (wants_pressure)
+        for (int a = 0; a < nfit; a++) *c++ += f[a] * p;
+    };
+    nodes.at(nodes.given, atom->x[place.i], std::sqrt(kernel.cutsq - away * away), add_to);
+  }
   nodes.add_up();
   fit(nmoment, nfit, wants_velocity + wants_pressure);
 }

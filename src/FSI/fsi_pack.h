@@ -40,12 +40,16 @@
 #elif defined(__GNUC__) && (defined(__x86_64__) || defined(__aarch64__)) && !defined(__EDG__) && \
     !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
 #define FSI_PACKS 1
+#define FSI_OUTLINE __attribute__((noinline))
 #define FSI_INLINE inline __attribute__((always_inline))
 #define FSI_INLINE_LAMBDA __attribute__((always_inline))
 #else
 #define FSI_PACKS 0
 #define FSI_INLINE inline
 #define FSI_INLINE_LAMBDA
+#endif
+#ifndef FSI_OUTLINE
+#define FSI_OUTLINE
 #endif
 #if FSI_PACKS && defined(__x86_64__)
 #define FSI_TARGET __attribute__((target("avx2,fma")))

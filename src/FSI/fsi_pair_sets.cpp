@@ -92,10 +92,9 @@ void PairSets::add_sets_of_levels(bool full)
       set.level = a;
       set.unlike = true;
       set.h = 0.5 * (levels[a].h + levels[b].h);
-      with_kernel(disc->kernel, disc->dim, set.h, [&](const auto &kernel) {
-        set.cut = kernel.cut;
-        set.wdx = kernel.W(spacing_between(levels[a], levels[b]));
-      });
+      const ChosenKernel kernel(disc->kernel, disc->dim, set.h);
+      set.cut = kernel.cut;
+      set.wdx = kernel.W(spacing_between(levels[a], levels[b]));
       set.loops = set.of_forces = make_loops(set.h, have_packs());
       of_two_levels[n * a + b] = sets.size();
       sets.push_back(set);

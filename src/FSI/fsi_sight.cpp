@@ -49,21 +49,20 @@ void Sight::tabulate()
     const size_t t = k % types.size();
     if (types[t] == 0.0) continue;
     const double dx = disc.dx_of(t), sharper = disc.sharper_of(t, level.dx);
-    with_kernel(disc.kernel, disc.dim, level.h, [&](const auto &kernel) {
-      constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
-      const double step = kernel.cut / STEPS;
-      for (int place = 0; place <= NTABLE; place++) {
-        Backfill sum = {0.0, 0.0};
-        for (double a = place * kernel.cut / NTABLE; a < kernel.cut; a += dx)
-          for (int m = 0; m < STEPS; m++) {
-            const double s = (m + 0.5) * step, r = std::sqrt(a * a + s * s);
-            if (r >= kernel.cut) continue;
-            sum.force -= (D == 3 ? s : 1.0) * a * kernel.sharper_gradient(r, sharper);
-            sum.weight += (D == 3 ? s : 1.0) * kernel.sharper(r, sharper);
-          }
-        half_space[k].push_back(sum);
-      }
-    });
+    const ChosenKernel kernel(disc.kernel, disc.dim, level.h);
+    constexpr int STEPS = 200;
+    const double step = kernel.cut / STEPS;
+    for (int place = 0; place <= NTABLE; place++) {
+      Backfill sum = {0.0, 0.0};
+      for (double a = place * kernel.cut / NTABLE; a < kernel.cut; a += dx)
+        for (int m = 0; m < STEPS; m++) {
+          const double s = (m + 0.5) * step, r = std::sqrt(a * a + s * s);
+          if (r >= kernel.cut) continue;
+          sum.force -= (kernel.dim == 3 ? s : 1.0) * a * kernel.sharper_gradient(r, sharper);
+          sum.weight += (kernel.dim == 3 ? s : 1.0) * kernel.sharper(r, sharper);
+        }
+      half_space[k].push_back(sum);
+    }
   }
 }
 

@@ -128,8 +128,8 @@ void LightSolids::for_wet_pairs(PairSets &sets, const FluidParticles &particles,
   const int *const type = atom->type;
   const std::vector<char> light = types();
   const auto visit = [&](const FluidPairs &pairs, double dx, const Walls::Reflection *reflection,
-                         const auto &kernel) {
-    constexpr int D = std::decay_t<decltype(kernel)>::DIM;
+                         const ChosenKernel &kernel, auto dim) {
+    constexpr int D = dim();
     const FluidParticles &in = pairs.in;
     const Mirror mirror = pairs.mirror ? *pairs.mirror : Mirror();
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
@@ -157,10 +157,11 @@ void LightSolids::for_wet_pairs(PairSets &sets, const FluidParticles &particles,
   };
   sets.for_all(step.walls, particles, [&](const PairSet &set, const FluidPairs &pairs, int k) {
     if (set.what != PairSet::SOLIDS) return;
-    with_kernel(disc.kernel, disc.dim, set.h, [&](const auto &kernel) {
-      visit(pairs, disc.levels[set.level].dx, pairs.mirror ? &step.walls.reflections[k] : nullptr,
-            kernel);
-    });
+    const ChosenKernel kernel(disc.kernel, disc.dim, set.h);
+    const auto *const reflection = pairs.mirror ? &step.walls.reflections[k] : nullptr;
+    const double dx = disc.levels[set.level].dx;
+    disc.dim == 2 ? visit(pairs, dx, reflection, kernel, std::integral_constant<int, 2>())
+                  : visit(pairs, dx, reflection, kernel, std::integral_constant<int, 3>());
   });
 }
 

@@ -281,9 +281,9 @@ void PairFSIFluid::init_style()
                                 implicit && sticks_to_solids());
   members->shear.emplace(lmp, *disc, *step, *ghosts, eddies);
   members->implicit.emplace(lmp, *disc, *step, *ghosts);
-  with_kernel(disc->kernel, disc->dim, disc->h, [this](const auto &kernel) {
-    members->wall_shift = Shift<std::decay_t<decltype(kernel)>::DIM>::find_walls(kernel, disc->dx);
-  });
+  const ChosenKernel kernel(disc->kernel, disc->dim, disc->h);
+  members->wall_shift = disc->dim == 2 ? Shift<2>::find_walls(kernel, disc->dx)
+                                       : Shift<3>::find_walls(kernel, disc->dx);
   step->viscosity = nullptr;
   step->threads = nullptr;
   const bool mirrors = any_is(fixes_of<Part>(lmp), &Facts::mirror_walls);
@@ -646,12 +646,15 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const int nall = atom->nlocal + atom->nghost;
   const Walls walls = step->walls.moved(-dth);
   const FluidParticles particles = gather_for_rates<D>(dth);
-  if (ledger->kept || disc->has_levels()) pressure_over_density.resize(atom->nmax);
+  const bool sums_up = ledger->kept || disc->has_levels();
+  if (sums_up) pressure_over_density.resize(atom->nmax);
   if (ledger->kept)
     for (int i = 0; i < nall; i++)
       pressure_over_density[i] = pressure_of(i, atom, *disc, *step) / atom->rho[i];
 
-  RateLaws laws = {delta, pressure_over_density.data(), 0.0, members->wall_shift, fills(), 0.0};
+  RateLaws laws = {delta,   sums_up ? pressure_over_density.data() : nullptr,
+                   0.0,     members->wall_shift,
+                   fills(), 0.0};
   double *const shift = step->shifts ? step->shift[0] : nullptr;
   PairSums sums;
   pairs.for_rates(walls, particles,
@@ -743,21 +746,20 @@ void PairFSIFluid::add_velocities_at_solids()
   const auto add = [&](const PairSet &set, const FluidPairs &of_set, int) {
     const Mirror mirror = of_set.mirror ? *of_set.mirror : Mirror();
     if (set.what != PairSet::SOLIDS || !mirror.slips()) return;
-    with_kernel(disc->kernel, dim, set.h, [&](const auto &kernel) {
-      for (const Row &row : of_set.rows) {
-        double x[3], v[3];
-        mirror.reflect(atom->x[row.i], x);
-        mirror.reflect_velocity(atom->v[row.i], v);
-        for (const int *j = row.j; j < row.j + row.n; j++) {
-          double rsq = 0.0;
-          for (int d = 0; d < dim; d++) rsq += (atom->x[*j][d] - x[d]) * (atom->x[*j][d] - x[d]);
-          if (rsq >= kernel.cutsq) continue;
-          const double W = kernel.W(std::sqrt(rsq));
-          for (int d = 0; d < dim; d++) beyond[*j][d] += W * v[d];
-          beyond[*j][dim] += W;
-        }
+    const ChosenKernel kernel(disc->kernel, dim, set.h);
+    for (const Row &row : of_set.rows) {
+      double x[3], v[3];
+      mirror.reflect(atom->x[row.i], x);
+      mirror.reflect_velocity(atom->v[row.i], v);
+      for (const int *j = row.j; j < row.j + row.n; j++) {
+        double rsq = 0.0;
+        for (int d = 0; d < dim; d++) rsq += (atom->x[*j][d] - x[d]) * (atom->x[*j][d] - x[d]);
+        if (rsq >= kernel.cutsq) continue;
+        const double W = kernel.W(std::sqrt(rsq));
+        for (int d = 0; d < dim; d++) beyond[*j][d] += W * v[d];
+        beyond[*j][dim] += W;
       }
-    });
+    }
   };
   pairs.for_all(step->walls, particles_at(nullptr), add);
 }

@@ -140,9 +140,7 @@ void PairFSIGrain::compute(int eflag, int vflag)
   const Phase phase(step->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   find_grains();
-  with_kernel(disc->kernel, disc->dim, disc->h, [this](const auto &kernel) {
-    sum_up(kernel);
-  });
+  disc->dim == 2 ? sum_up<2>() : sum_up<3>();
   if (force->newton_pair) reverse_comm(step->profile, comm, this);
   disc->dim == 2 ? forces<2>() : forces<3>();
   forward_comm(step->profile, comm, this);
@@ -175,9 +173,9 @@ void PairFSIGrain::find_grains()
 }
 
 // over the pairs of the neighbor list, in which either may be the grain
-template <class K> void PairFSIGrain::sum_up(const K &kernel)
+template <int D> void PairFSIGrain::sum_up()
 {
-  constexpr int D = K::DIM;
+  const ChosenKernel kernel(disc->kernel, D, disc->h);
   using Of = Sums<D>;
   const auto *const v = vectors(atom->v);
   const double *const rmass = atom->rmass, *const rho = atom->rho;

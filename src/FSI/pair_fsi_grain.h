@@ -72,7 +72,7 @@ class PairFSIGrain : public Pair, public FSI::Part {
 
   void allocate();
   void find_grains();
-  template <class K> void sum_up(const K &);
+  template <int D> void sum_up();
   template <int D> void forces();
   template <int D> void give_back();
   void check_radii(int type) const;

@@ -100,6 +100,25 @@ TEST_P(KernelTest, CoefficientsAsPrinted)
   });
 }
 
+TEST_P(KernelTest, ChosenAtRunTime)
+{
+  const ChosenKernel chosen(GetParam().kind, GetParam().dim, H);
+  EXPECT_EQ(chosen.dim, GetParam().dim);
+  EXPECT_EQ(chosen.h, H);
+  with([&](const auto &k) {
+    EXPECT_EQ(chosen.cut, k.cut);
+    EXPECT_EQ(chosen.cutsq, k.cutsq);
+    EXPECT_EQ(chosen.hinv, k.hinv);
+    for (double r = 0.0; r < 1.1 * k.cut; r += 0.07 * H) {
+      EXPECT_EQ(chosen.W(r), k.W(r));
+      EXPECT_EQ(chosen.gradient(r), k.gradient(r));
+      EXPECT_EQ(chosen.curvature(r), k.curvature(r));
+      EXPECT_EQ(chosen.sharper(r, 0.03), k.sharper(r, 0.03));
+      EXPECT_EQ(chosen.sharper_gradient(r, 0.03), k.sharper_gradient(r, 0.03));
+    }
+  });
+}
+
 TEST_P(KernelTest, UnitIntegral)
 {
   const auto &c = GetParam();
