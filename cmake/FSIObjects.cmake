@@ -9,11 +9,11 @@ add_library(fsi OBJECT ${FSI_SOURCES})
 # include folders of imported targets by -I, as in LAMMPS: then the compiler cache knows the objects of either way to build
 set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON NO_SYSTEM_FROM_IMPORTED ON)
 target_compile_features(fsi PRIVATE cxx_std_17)
-# what reads scripts, advises, measures, reports, makes particles or stops is compiled for size: it runs before the first step, at outputs, in few
+# what reads scripts, advises, measures, reports or stops is compiled for size: it runs before the first step, at outputs, in few
 # steps or for few particles
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND CMAKE_BUILD_TYPE STREQUAL "Release")
   set(_small ${FSI_SOURCES})
-  set(_commands "advice|bond_maker|buffer|changes|check|clamps|commands|keywords|material|population|record|stop")
+  set(_commands "advice|buffer|changes|check|clamps|commands|keywords|material|population|record|stop")
   set(_fixes "inlet|move|refine|report|spectrum|wall_mirror|watch")
   list(FILTER _small INCLUDE REGEX "/FSI/(atom_vec_fsi|compute_fsi_[a-z]+|fix_fsi_(${_fixes})|fsi_(${_commands}))\\.cpp$")
   set_property(SOURCE ${_small} APPEND PROPERTY COMPILE_OPTIONS -Os)
