@@ -191,7 +191,7 @@ def show_dump(files, options):
         raise ValueError(f"{', '.join(options)}: only with plot=")
     first, last, count = None, None, 0
     for last in dump.frames(path, progress=Progress(f"reading {path}")):
-        first, count = first or last, count + 1
+        first, count = last if first is None else first, count + 1
     if not count:
         raise ValueError(f"{path} has no frames")
     print(f"{count} frames from t = {first.time:g} to {last.time:g}, {len(first)} particles at "
@@ -202,7 +202,7 @@ def show_dump(files, options):
               + (f", {' x '.join(f'{s:.3g}' for s in size)} spacings" if size else ""))
     if len(made_of) > MANY:
         print(f"  and {len(made_of) - MANY} more")
-    for name, values in last.columns.items():
+    for name, values in last.columns.items() if len(last) else ():
         print(f"  {name:12} {np.nanmin(values):.6g} to {np.nanmax(values):.6g}")
 
 
