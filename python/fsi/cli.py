@@ -305,7 +305,10 @@ def main(arguments=None):
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     name, *words = arguments or [""]
     if name == "fill":
-        return fill.main(words)
+        try:
+            return fill.main(words)
+        except OSError as error:
+            sys.exit(f"fsi fill: {error}")
     if name in ("-h", "--help", "help"):
         print(__doc__)
         return None
