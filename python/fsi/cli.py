@@ -242,8 +242,8 @@ def make_check(files, options):
 
     Reads the whole deck and sets every run up without a step: prints the effects that are on and
     the advice of the package. Then estimates CPU time and memory by some steps of each run.
-    NAME=VALUE, or -var NAME VALUE as for lmp. Nothing in the folder is overwritten: the deck runs
-    in a copy of what it names. Status 1 if there is advice or an error.
+    NAME=VALUE, or -var NAME VALUE as for lmp. Nothing is overwritten, but by the deck's shell
+    commands: it runs in a copy of what it names. Status 1 if there is advice or an error.
     """
     sys.exit(check.main(files[0], options))
 
