@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from decks import WALL, atoms, box, materials, resume, start
-from scenes import WATER as INVISCID, dam_gate, difference, differing, fluid_box, lammps, run, watch
+from decks import WALL, atoms, box, deck, materials, resume, start
+from scenes import (RUBBER, WATER as INVISCID, dam_gate, difference, differing, fluid_box, lammps,
+                    run, watch)
 
 # Going on with other neighbor lists or another rank count changes the order of sums only: see
 # TRAJECTORY in test_parallel.py;
@@ -220,6 +221,23 @@ def test_rerun(tmp_path):
     # the same state in another order of sums
     assert difference(run_forces, frames[-1], "f") < 1e-13
     assert difference(run_forces, frames[-1], "rho") < 1e-13
+
+
+def test_rerun_beside_walls(tmp_path):
+    """Rerun sets fixes up for each frame, and pair styles once. The stress of a total-Lagrangian
+    body is that of the run, to 1e-16 of 0.2 m over 0.01 m."""
+    text = deck("-0.1 0.3 -0.1 0.3", 0.01, {"water": INVISCID, "wall": WALL, "plate": RUBBER},
+                "fix wall wall fsi/wall/particle", "variable shear atom 50*y",
+                "velocity plate set v_shear 0 0 units box",
+                water="0 0.1 0 0.1", wall="0 0.2 -0.04 0", plate="0.1 0.13 0 0.1",
+                made="group moves subtract all wall", group="moves")
+    frames = run(tmp_path, text + watch(every=10) + "run 20\n").frames()
+    again = run(tmp_path, text + watch("rerun.dump", 1)
+                + "rerun atoms.dump dump x y vx vy\n").frames("rerun.dump")
+    assert [frame.step for frame in again] == [0, 10, 20]
+    stress = [frame["sxx"][frame["type"] == 3] for frame in (frames[2], again[2])]
+    assert np.abs(stress[0]).max() > 100.0
+    np.testing.assert_allclose(*stress, atol=1e-11 * np.abs(stress[0]).max())
 
 
 @pytest.mark.parametrize("dim", (2, 3))
