@@ -690,17 +690,17 @@ OUTPUTS = {"atom": "compute c all fsi/atom p", "surface": "compute c all fsi/sur
            "probe": "compute c all fsi/probe p point 0.1 0.1 0", "force": "compute c all fsi/force"}
 
 
-@pytest.mark.parametrize("when", ("before", "created"))
+@pytest.mark.parametrize("when", ("fsi/set all hydrostatic 0.1",
+                                  "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box",
+                                  "run 1\npair_style zero 0.1"), ids=("before", "created", "gone"))
 @pytest.mark.parametrize("kind", OUTPUTS)
 def test_computes_between_runs(tmp_path, kind, when):
-    """After fsi/set and before a run, or after atoms are created: an error that says what is
-    needed."""
+    """After fsi/set and before a run, after atoms are created, or without pair styles of the
+    package: an error that says what is needed."""
     show = {"atom": "write_dump all custom a.dump id c_c",
             "surface": "write_dump all custom a.dump id c_c", "energy": 'print "$(c_c)"',
             "probe": 'print "$(c_c)"', "force": 'print "$(c_c[1])"'}[kind]
-    start = ("fsi/set all hydrostatic 0.1\n" if when == "before"
-             else "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box\n")
-    done = lammps(tmp_path, f"{BEFORE_A_RUN}{OUTPUTS[kind]}\n{start}{show}\n", water_fsi=MATERIALS)
+    done = lammps(tmp_path, f"{BEFORE_A_RUN}{OUTPUTS[kind]}\n{when}\n{show}\n", water_fsi=MATERIALS)
     assert done.status != 0 and any("needs a run before it" in e
                                     for e in done.errors), done.output[-1500:]
 
