@@ -705,6 +705,18 @@ def test_computes_between_runs(tmp_path, kind, when):
                                     for e in done.errors), done.output[-1500:]
 
 
+@pytest.mark.parametrize("command", ("create_atoms 1 region none", "comm_style tiled",
+                                     "change_box all boundary p f p"))
+def test_ghosts_that_are_gone(tmp_path, command):
+    """Commands that take ghosts away, if they change no particle: lists still name them."""
+    text = deck("0 0.2 -0.1 0.2", 0.01, {"water": INVISCID}, "compute c all fsi/atom shear/rate",
+                "region none block 8 9 8 9 INF INF units box", water="0 0.2 0 0.1",
+                boundary="p f p")
+    done = lammps(tmp_path, f"{text}run 1\n{command}\nwrite_dump all custom a.dump id c_c\n")
+    assert "Compute fsi/atom needs a run before it" in done.output
+    run(tmp_path, f"{text}run 1\n{command}\nrun 0\nwrite_dump all custom a.dump id c_c\n")
+
+
 def test_fixes_before_a_run(tmp_path):
     """Outputs of fixes that know nothing yet are 0, not a crash."""
     text = BEFORE_A_RUN + (
