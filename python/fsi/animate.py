@@ -46,11 +46,15 @@ def _at_rest(parts):
 def prepared(frames, options):
     """(frames, arguments of plot's functions) with what `options` say of view, color and types."""
     colour, solid, wall = options.get("color"), _types(options, "solid"), _types(options, "wall")
-    wanted = _types(options, "types")
+    wanted, lacks = _types(options, "types"), [n for n in ("type", "x", "y") if n not in frames[0]]
+    if lacks:
+        raise ValueError(f"the dump has no column {' and no '.join(lacks)}; it has "
+                         f"{', '.join(frames[0].columns)}")
     if wanted:
         frames = [frame.of_types(*wanted) for frame in frames]
-        if not all(map(len, frames)):
-            raise ValueError(f"types={options['types']}: the dump has no such particles")
+    if not any(map(len, frames)):
+        raise ValueError(f"types={options['types']}: the dump has no such particles" if wanted
+                         else "the dump has no particles")
     if colour == "speed":
         for frame in frames:
             frame.columns["speed"] = np.linalg.norm(frame.vector(("vx", "vy", "vz")), axis=1)
@@ -61,9 +65,10 @@ def prepared(frames, options):
                          "c_ID[1] p colname c_ID[2] vonmises, "
                          "with ID that of compute fsi/atom p vonmises; or color=COLUMN")
     fluid, solid, wall = species(frames, solid, wall)
-    distance = spacing(frames[0])
+    distance = spacing(next(frame for frame in frames if len(frame)))
     labels = plot.LABELS
-    if "view" in options or any("z" in frame and np.ptp(frame["z"]) > 0.0 for frame in frames):
+    if "view" in options or any("z" in frame and len(frame) and np.ptp(frame["z"]) > 0.0
+                                for frame in frames):
         frames, labels = plot.seen(frames, options.get("view", "30,20"))
     return frames, {"spacing": distance, "fluid": fluid, "solid": solid, "wall": wall,
                     "colour": colour, "labels": labels}

@@ -14,8 +14,10 @@ from .command import Refusal
 from .sweep import deck_variables
 
 # commands whose words are no input
-WRITES = ("dump", "restart", "write_data", "write_dump", "write_restart", "write_coeff", "log",
+WRITES = ("dump", "fsi/dump", "restart", "write_data", "write_dump", "write_restart", "write_coeff",
           "print", "shell")
+NAMES_OUTPUT = ("file", "append")  # of fix and print
+WORD = re.compile(r"""(?<![^\s"'])[^\s"']+""")
 RUN = re.compile(r"^([ \t]*)run[ \t]+(\S+)(?:[^\n]*&[ \t]*\n)*[^\n]*$", re.M)
 BODIES, FEW = "fsi_check.bodies", 6  # a dump of them; how many are listed
 SAMPLE = 40  # steps of each run, of which the estimate is made
@@ -42,16 +44,16 @@ def inputs(deck, variables, folder):
         path = waiting.pop()
         known = {**deck_variables(path), **variables}
         for line in path.read_text(errors="replace").replace("&\n", " ").splitlines():
-            words = re.sub(r"(^|\s)#.*", "", line).replace('"', " ").replace("'", " ").split()
+            line = re.sub(r"(^|\s)#.*", "", line)
+            words = WORD.findall(line)
             if not words or words[0] in WRITES:
                 continue
-            for before, word in zip(words, words[1:]):
-                if before in ("file", "append") and words[0] in ("fix", "print"):
+            quoted = [(None, a or b) for a, b in re.findall(r'"([^"]*)"|\'([^\']*)\'', line)]
+            for before, word in [*zip(words, words[1:]), *quoted]:
+                if before in NAMES_OUTPUT and words[0] == "fix":
                     continue
-                word = re.sub(r"\$\{(\w+)\}|\$(\w)", lambda m: known.get(m[1] or m[2], "*"), word)
-                word = re.sub(r"\*+", "*", re.sub(r"\$\([^)]*\)", "*", word))
-                if len(word.replace("*", "")) < 3 or word.startswith("/") or ".." in Path(
-                    word).parts:
+                word = spelled(word, known)
+                if len(word.replace("*", "")) < 3 or word.startswith("/"):
                     continue
                 for file in folder.glob(word) if "*" in word else [folder / word]:
                     if file.is_file() and file not in found:
@@ -60,6 +62,30 @@ def inputs(deck, variables, folder):
                             decks.append(file)
                             waiting.append(file)
     return found, decks
+
+
+def spelled(word, known):
+    """A word with the values of variables, * for those that are not known"""
+    word = re.sub(r"\$\{(\w+)\}|\$(\w)", lambda m: known.get(m[1] or m[2], "*"), word)
+    return re.sub(r"\*+", "*", re.sub(r"\$\([^)]*\)", "*", word))
+
+
+def kept_below(root, place, text, known):
+    """A deck's text that writes below `root` what it would write to absolute paths, and one log;
+    folders that it writes into, seen from `place`, are made."""
+    def moved(line):
+        words = list(WORD.finditer(line))
+        if words and words[0][0] == "log":
+            return "\n"
+        for before, word in reversed(list(zip(words, words[1:]))):
+            path = spelled(word[0], known)
+            if "/" in path and (before[0] in NAMES_OUTPUT or words[0][0] in WRITES[:-2]):
+                above = root if path.startswith("/") else ""
+                Path(place, f"{above}{path}").parent.mkdir(parents=True, exist_ok=True)
+                line = line[:word.start()] + above + line[word.start():]
+        return line
+
+    return "".join(map(moved, text.splitlines(keepends=True)))
 
 
 def spelled_out(text):
@@ -93,7 +119,8 @@ def run(deck, variables, steps=0, look=None):
     if not deck.is_file():
         raise Refusal(f"{deck} is not a file")
     with tempfile.TemporaryDirectory(prefix="fsi_check_") as name:
-        place = Path(name)
+        place = Path(name, *folder.parts[1:])  # what is in .. has a place, too
+        place.mkdir(parents=True)
         for path in folder.iterdir():
             if path.is_dir():
                 (place / path.name).mkdir()  # what a deck writes into a folder needs the folder
@@ -102,7 +129,9 @@ def run(deck, variables, steps=0, look=None):
             target = place / (file.relative_to(folder) if folder in file.parents else file.name)
             target.parent.mkdir(parents=True, exist_ok=True)
             if file in decks:
-                target.write_text(shortened(file.read_text(errors="replace"), steps))
+                text = kept_below(name, place, file.read_text(errors="replace"),
+                                  {**deck_variables(file), **variables})
+                target.write_text(shortened(text, steps))
             else:
                 shutil.copyfile(file, target)
         command = [lammps(), "-in",

@@ -191,7 +191,7 @@ def show_dump(files, options):
         raise ValueError(f"{', '.join(options)}: only with plot=")
     first, last, count = None, None, 0
     for last in dump.frames(path, progress=Progress(f"reading {path}")):
-        first, count = first or last, count + 1
+        first, count = last if first is None else first, count + 1
     if not count:
         raise ValueError(f"{path} has no frames")
     print(f"{count} frames from t = {first.time:g} to {last.time:g}, {len(first)} particles at "
@@ -202,7 +202,7 @@ def show_dump(files, options):
               + (f", {' x '.join(f'{s:.3g}' for s in size)} spacings" if size else ""))
     if len(made_of) > MANY:
         print(f"  and {len(made_of) - MANY} more")
-    for name, values in last.columns.items():
+    for name, values in last.columns.items() if len(last) else ():
         print(f"  {name:12} {np.nanmin(values):.6g} to {np.nanmax(values):.6g}")
 
 
@@ -242,8 +242,8 @@ def make_check(files, options):
 
     Reads the whole deck and sets every run up without a step: prints the effects that are on and
     the advice of the package. Then estimates CPU time and memory by some steps of each run.
-    NAME=VALUE, or -var NAME VALUE as for lmp. Nothing in the folder is overwritten: the deck runs
-    in a copy of what it names. Status 1 if there is advice or an error.
+    NAME=VALUE, or -var NAME VALUE as for lmp. Nothing is overwritten, but by the deck's shell
+    commands: it runs in a copy of what it names. Status 1 if there is advice or an error.
     """
     sys.exit(check.main(files[0], options))
 
@@ -305,7 +305,10 @@ def main(arguments=None):
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     name, *words = arguments or [""]
     if name == "fill":
-        return fill.main(words)
+        try:
+            return fill.main(words)
+        except OSError as error:
+            sys.exit(f"fsi fill: {error}")
     if name in ("-h", "--help", "help"):
         print(__doc__)
         return None

@@ -51,43 +51,51 @@ def frames(path, only=None, progress=None):
     only: numbers of the frames, from 0, that are wanted; progress(share of the file that is read)
     is called before each frame.
     """
+    step, time, count, box, number = None, None, None, None, -1
     with open(path, "rb") as raw, io.TextIOWrapper(gzip.open(raw) if str(path).endswith(".gz")
                                                    else raw) as file:
-        step, time, count, box, number = None, None, None, None, -1
         size = os.fstat(raw.fileno()).st_size
-        for line in file:
-            if line.startswith("ITEM: TIMESTEP"):
-                step, number = int(next(file)), number + 1
-                if progress:
-                    progress(raw.tell() / size)
-            elif line.startswith("ITEM: TIME"):
-                time = float(next(file))
-            elif line.startswith("ITEM: NUMBER"):
-                count = int(next(file))
-            elif line.startswith("ITEM: BOX"):
-                box = np.array([[float(word) for word in next(file).split()[:2]] for _ in range(3)])
-            elif line.startswith("ITEM: ATOMS"):
-                if time is None:
-                    raise ValueError(
-                        f"{path} has no times: the deck needs `dump_modify ... time yes`")
-                if only is not None and number not in only:
-                    for _ in islice(file, count):
-                        pass
-                    continue
-                names = line.split()[2:]
-                values = np.fromstring("".join(islice(file, count)), sep=" ")
-                if values.size != count * len(names):
-                    warnings.warn(f"{path}: the frame of step {step} is incomplete and left out",
-                                  stacklevel=2)
-                    return
-                yield _frame(step, time, box, names, values.reshape(count, len(names)))
+        try:
+            for line in file:
+                if line.startswith("ITEM: TIMESTEP"):
+                    step, number = int(*_take(file, 1)), number + 1
+                    if progress:
+                        progress(raw.tell() / size)
+                elif line.startswith("ITEM: TIME"):
+                    time = float(*_take(file, 1))
+                elif line.startswith("ITEM: NUMBER"):
+                    count = int(*_take(file, 1))
+                elif line.startswith("ITEM: BOX"):
+                    box = np.array([row.split()[:2] for row in _take(file, 3)], dtype=float)
+                elif line.startswith("ITEM: ATOMS"):
+                    if time is None:
+                        raise ValueError(
+                            f"{path} has no times: the deck needs `dump_modify ... time yes`")
+                    rows = _take(file, count)
+                    if only is None or number in only:
+                        yield _frame(step, time, box, line.split()[2:], rows)
+        except EOFError:  # of gzip, too: the run still writes, or was killed
+            warnings.warn(f"{path}: the last frame is incomplete and left out", stacklevel=2)
+
+
+def _take(file, count):
+    """So many of the next lines"""
+    lines = list(islice(file, count))
+    if len(lines) < count:
+        raise EOFError
+    return lines
 
 
 def some(path, number, progress=None):
     """So many frames, evenly chosen from the first to the last; all if there are fewer. An error if
     there is none."""
+    total = 0
     with (gzip.open if str(path).endswith(".gz") else open)(path, "rt") as file:
-        total = sum(line.startswith("ITEM: ATOMS") for line in file)
+        try:
+            for line in file:
+                total += line.startswith("ITEM: ATOMS")
+        except EOFError:
+            pass
     found = list(frames(path, {round(k) for k in np.linspace(0, total - 1, min(number, total))},
                         progress)) if total else []
     if not found:
@@ -148,7 +156,17 @@ def bodies(frame):
     return found
 
 
-def _frame(step, time, box, names, table):
+def _frame(step, time, box, names, rows):
+    """Columns of words, such as `element`, are left out."""
+    table = np.fromstring("".join(rows), sep=" ") if _are_numbers(rows[:1]) else np.empty(0)
+    if table.size != len(rows) * len(names):
+        words = [row.split() for row in rows]
+        if len(words[-1]) < len(names):
+            raise EOFError
+        kept = [k for k in range(len(names)) if _are_numbers(row[k] for row in words)]
+        names, table = [names[k] for k in kept], np.array(
+            [[row[k] for k in kept] for row in words], dtype=float)
+    table = table.reshape(len(rows), len(names))
     if "id" in names:
         table = table[np.argsort(table[:, names.index("id")], kind="stable")]
     columns = {}
@@ -156,3 +174,10 @@ def _frame(step, time, box, names, table):
         columns[name] = table[:, k].astype(np.int64) if name in _INTEGERS else np.ascontiguousarray(
             table[:, k])
     return Frame(step, time, box, columns)
+
+
+def _are_numbers(texts):
+    try:
+        return [float(word) for text in texts for word in text.split()] is not None
+    except ValueError:
+        return False

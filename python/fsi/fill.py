@@ -9,6 +9,7 @@ surfaces.
 """
 
 import argparse
+import re
 import struct
 import sys
 from itertools import product
@@ -29,7 +30,7 @@ SAME = 1e-6
 def read_outline(path):
     """Segments (n, 2, 2) of the closed outlines of a text file."""
     segments = []
-    for block in Path(path).read_text().replace(",", " ").split("\n\n"):
+    for block in re.split(r"\n\s*\n", Path(path).read_text().replace(",", " ")):
         lines = [line.split("#")[0].split() for line in block.splitlines()]
         try:
             points = np.array([[float(word) for word in line] for line in lines if line])
@@ -216,6 +217,9 @@ def main(arguments=None):
                         "body (default 0: none, as for fluids and walls)")
     parser.add_argument("--box", metavar="N", type=float, default=4.0,
                         help="the simulation box ends N spacings beyond the particles (default 4)")
+    # argparse takes -1e-3 for an option
+    arguments = [f"{float(word):.17f}" if re.fullmatch(r"-[\d.]+[eE][-+]?\d+", word) else word
+                 for word in (sys.argv[1:] if arguments is None else arguments)]
     given = parser.parse_args(arguments)
     if (not given.dx > 0.0 or given.shell < 0 or given.type < 1 or given.mol < 0 or given.scale
         == 0.0):

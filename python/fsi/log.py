@@ -117,19 +117,28 @@ def read(path):
             log.runs[-1].thermo = {name: table[:, k] for k, name in enumerate(header)}
 
     expect_header = False
-    text = Path(path).read_text(errors="replace")
-    for line in text.splitlines():
+    lines, starts, ended = Path(path).read_text(errors="replace").splitlines(), [], 0
+    for k, line in enumerate(lines):
+        match = _LOOP.match(line) or _REPORT.match(line)
+        if match and log.runs and log.runs[-1].loop_seconds is not None:
+            # a run with "pre no" has no line of memory before its table
+            starts.append(_header(lines, ended, k))
+            log.runs.append(Run())
+            header = lines[starts[-1]].split() if starts[-1] < k else None
+            rows = [row for row in (_row(each, len(header or ())) for each in lines[starts[-1]:k])
+                    if row]
         if line.startswith("WARNING"):
             log.warnings.append(line)
         elif line.startswith("ERROR"):
             log.errors.append(line)
         elif match := _MEMORY.match(line):
             close_table()
+            starts.append(k)
             log.runs.append(Run(bytes_per_rank=float(match[2]) * 2**20))
             header, rows, expect_header = None, [], True
         elif match := _LOOP.match(line):
             close_table()
-            header, rows = None, []
+            header, rows, ended = None, [], k
             if log.runs:
                 run = log.runs[-1]
                 run.loop_seconds, run.ranks = float(match[1]), int(match[2])
@@ -164,15 +173,25 @@ def read(path):
             if row:
                 rows.append(row)
     close_table()
-    _blocks(log, text)
+    _blocks(log, lines, starts)
     return log
 
 
-def _blocks(log, text):
-    """Texts of several lines, as they stand in the log."""
-    log.effects = re.findall(r"^FSI: .*\n(?:  .*\n)*", text, re.M)
-    parts = re.split(r"^Per MPI rank memory allocation.*$", text, flags=re.M)[1:]
-    for run, part in zip(log.runs, parts):
+def _header(lines, first, last):
+    """Where a table begins: the first line of words with as many numbers below it"""
+    for k in range(first, last - 1):
+        width = len(lines[k].split())
+        if width and not _row(lines[k], width) and _row(lines[k + 1], width):
+            return k
+    return last
+
+
+def _blocks(log, lines, starts):
+    """Texts of several lines, as they stand in the log; starts: of runs, line numbers"""
+    text = lambda first, last=None: "".join(f"{line}\n" for line in lines[first:last])
+    log.effects = re.findall(r"^FSI: .*\n(?:  .*\n)*", text(0), re.M)
+    for run, first, last in zip(log.runs, starts, [*starts[1:], None]):
+        part = text(first, last)
         run.cost = "".join(re.findall(r"^FSI report: .*\n(?:  .*\n)*", part, re.M))
         run.times = "".join(re.findall(r"^MPI task timing breakdown:\n(?:.*\|.*\n|-+\n)*", part,
                                        re.M))

@@ -371,9 +371,8 @@ def _bar(figure, scale, left, bottom, height):
 
 def _extent(frames, spacing):
     """Smallest limits that show all particles of all frames."""
-    return [(min(f[name].min() for f in frames) - spacing, max(f[name].max() for f in frames)
-             + spacing)
-            for name in ("x", "y")]
+    every = (np.concatenate([frame[name] for frame in frames]) for name in ("x", "y"))
+    return [(values.min() - spacing, values.max() + spacing) for values in every]
 
 
 def _scales(frames, fluid, solid, colour=None, night=False):

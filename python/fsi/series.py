@@ -46,11 +46,31 @@ def read(path):
     if len(lines) < 2:
         raise ValueError(f"{path} has no rows")
     names = [name.strip() for name in lines[0].split(",")]
-    rows = [line.split(",") for line in lines[1:]]
-    if len(rows[-1]) != len(names):
-        rows.pop()
-    table = np.array(rows, dtype=float)
-    return Series({name: table[:, k] for k, name in enumerate(names)})
+    parts = [[]]
+    for line in lines[1:]:
+        if line.endswith(lines[0]):  # perhaps behind a line that was cut off
+            parts.append([])
+        else:
+            parts[-1].append(line.split(","))
+    tables = []
+    for rows in parts:
+        if rows and len(rows[-1]) != len(names):
+            rows.pop()
+        table = np.array(rows, dtype=float).reshape(-1, len(names))
+        tables.append({name: table[:, k] for k, name in enumerate(names)})
+    return _joined(tables)
+
+
+def _joined(parts):
+    """The parts, {name: values}, of a file that runs have gone on with, each under titles of its
+    own: what an earlier run wrote beyond the start of a later one is that one's again."""
+    whole = parts[0]
+    for part in parts[1:]:
+        time, begins = next(iter(whole.values())), next(iter(part.values()))[:1]
+        before = time < begins if len(begins) else np.full(len(time), True)
+        whole = {name: np.concatenate([values[before], part[name]])
+                 for name, values in whole.items()}
+    return Series(whole)
 
 
 def rms_distance(series, name, reference, reference_name, tolerance=1e-3):
@@ -188,23 +208,32 @@ def steady(time, values, blocks=8):
 def read_ave(path):
     """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps,
     rows)."""
-    titles, data = [], []
     lines = Path(path).read_text().splitlines()
-    if not lines or not lines[0].startswith("# Time-averaged"):
+    starts = [k for k, line in enumerate(lines) if line.startswith("# Time-averaged")]
+    if not starts or starts[0] != 0:
         raise ValueError(f"{path} is not a file of fix ave/time")
-    for line in lines:
-        if line.startswith("#"):
-            titles.append(line.lstrip("# ").split())
-        elif line.strip():
-            data.append([float(word) for word in line.split()])
-    if len(titles) < 2 or not data:
+    parts = [_averages(lines[first:last]) for first, last in zip(starts, [*starts[1:], None])]
+    parts = [part for part in parts if part]
+    if not parts:
         raise ValueError(f"{path} has no rows")
+    if any(list(part) != list(parts[0]) for part in parts):
+        raise ValueError(f"{path}: its columns change")
+    return _joined(parts)
+
+
+def _averages(lines):
+    """{name: values} of the lines of one fix ave/time; {} without rows."""
+    titles = [line.lstrip("# ").split() for line in lines if line.startswith("#")]
+    data = [[float(word) for word in line.split()] for line in lines
+            if line.strip() and not line.startswith("#")]
+    if len(titles) < 2 or not data:
+        return {}
     if len(titles) == 2:
         names = titles[1]
         if len(data[-1]) != len(names):
             data.pop()  # cut off
-        table = np.array(data)
-        return Series({name: table[:, k] for k, name in enumerate(names)})
+        table = np.array(data).reshape(-1, len(names))
+        return {name: table[:, k] for k, name in enumerate(names)}
     names, steps, blocks, k = titles[2][1:], [], [], 0
     while k < len(data):
         step, rows = data[k][0], int(data[k][1])
@@ -215,8 +244,8 @@ def read_ave(path):
         blocks.append([row[1:] for row in block])
         k += 1 + rows
     table = np.array(blocks)  # (steps, rows, columns)
-    return Series({"TimeStep": np.array(steps),
-                   **{name: table[:, :, k] for k, name in enumerate(names)}})
+    return {"TimeStep": np.array(steps),
+            **{name: table[:, :, k] for k, name in enumerate(names)}} if blocks else {}
 
 
 def read_any(path):

@@ -41,6 +41,9 @@ def convert(path, folder=None, progress=None):
     listed = []
     for frame in dump.frames(path, progress=progress):
         if not listed:
+            if "x" not in frame or "y" not in frame:
+                raise ValueError(f"{path} has no columns x and y; it has "
+                                 f"{', '.join(frame.columns)}")
             if folder.exists() and not folder.is_dir():
                 raise ValueError(f"{folder}, where the pictures would go, is a file: name another "
                                  "folder behind the dump")

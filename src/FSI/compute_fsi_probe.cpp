@@ -408,11 +408,15 @@ void ComputeFSIProbe::add_level(size_t level, const Walls &walls, const std::vec
 void ComputeFSIProbe::sum_up()
 {
   FixFSI::ready(lmp, "Compute fsi/probe")->link(disc, step);
-  for (const auto &s : sampled)
+  find_sampled();    // a script may have put another in its place since the last run
+  for (const auto &s : sampled) {
+    if (!s.compute->is_initialized())
+      error->all(FLERR, "Compute fsi/probe c_{} needs a run before it, if only run 0", s.id);
     if (!(s.compute->invoked_flag & INVOKED_PERATOM)) {
       s.compute->compute_peratom();
       s.compute->invoked_flag |= INVOKED_PERATOM;
     }
+  }
   if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
 
   const int npoints = points.size() / 3;

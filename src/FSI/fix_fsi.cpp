@@ -186,7 +186,7 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 {
   FixFSI *const fix_fsi = find(lmp, who);
   fix_fsi->find_parts();    // commands since the last run may have changed them
-  bool mine = fix_fsi->changes.of_atoms();
+  bool mine = fix_fsi->changes.of_atoms() || pairs_of<Part>(lmp).empty();
   for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
   if (anywhere(mine, lmp->world))
     lmp->error->all(FLERR,

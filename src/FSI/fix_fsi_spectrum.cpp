@@ -35,7 +35,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static constexpr int LEAST = 8;    // samples that make a spectrum
+static constexpr int LEAST = 8;            // samples that make a spectrum
+static constexpr double ROUND = 1.0e-9;    // of a time
 
 FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), last(-1)
 {
@@ -80,14 +81,29 @@ FILE *FixFSISpectrum::open(const char *mode) const
   return fp;
 }
 
+// what is sampled next must be ready, also where a restart file has the sample of this step
+void FixFSISpectrum::setup(int)
+{
+  end_of_step();
+  modify->addstep_compute_all((update->ntimestep / nevery + 1) * nevery);
+}
+
 void FixFSISpectrum::end_of_step()
 {
   const bigint step = update->ntimestep;
-  if (step % nevery || step <= last) return;    // the last step of a run is the first of the next
+  const double now = FSI::Clock::now(update), before = time.empty() ? -HUGE_VAL : time.back();
+  // after read_restart; to a fix that is there LAMMPS refuses it
+  if (step < last || now < before - ROUND * std::fabs(before))
+    error->all(FLERR,
+               "Fix fsi/spectrum {}: step {}, time {:.8g} is before its last sample, of step {}, "
+               "time {:.8g}: no reset_timestep, or give it another ID to begin anew",
+               id, step, now, last, before);
+  // the last step of a run is the first of the next
+  if (step % nevery || step == last || now <= before) return;
   last = step;
   modify->clearstep_compute();
   value.push_back(input->variable->compute_equal(argument));    // as in a formula
-  time.push_back(FSI::Clock::now(update));
+  time.push_back(now);
   modify->addstep_compute(step + nevery);
   if (analyze_every && value.size() % analyze_every == 0) analyze();
 }

@@ -33,7 +33,7 @@ class FixFSISpectrum : public Fix {
  public:
   FixFSISpectrum(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::END_OF_STEP | FixConst::POST_RUN; }
-  void setup(int) override { end_of_step(); }
+  void setup(int) override;
   void end_of_step() override;
   void post_run() override;
   double compute_scalar() override { return value.size(); }    // of samples

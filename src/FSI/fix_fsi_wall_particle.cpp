@@ -160,6 +160,10 @@ std::vector<int> FixFSIWallParticle::types_of_members()
 
 void FixFSIWallParticle::enter_states(std::vector<State> &state, const std::vector<int> &types)
 {
+  // rerun calls init() of fixes once for each frame, and not that of pair styles
+  for (size_t t = 0; t < entered.size(); t++)
+    if (entered[t]) state[t].kept = false;
+  entered = types;
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!types[t]) continue;
     State &s = state[t];

@@ -73,6 +73,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   std::unique_ptr<FSI::Message> to_ghosts, from_ghosts;
   std::vector<int> types_of_members();
   void enter_states(std::vector<FSI::State> &, const std::vector<int> &types);
+  std::vector<int> entered;    // types, as above
   // f(wall particle, fluid particle or its image, distance between and its square, its mirror) of
   // those within a distance, if that is not beyond the kernel's support
   template <class F> void for_pairs(size_t level, double cutsq, F f) const;

@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "atom_vec_fsi.h"
+#include "comm.h"
 #include "compute.h"
 #include "domain.h"
 #include "error.h"
@@ -35,13 +36,20 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// Who is where in the arrays of this rank, and of what type: FNV-1a of it
+// Who is where in the arrays of this rank, and of what type, whether ghosts are there, which some
+// commands take away, and who renews them: FNV-1a of it
 uint64_t Changes::fingerprint() const
 {
   uint64_t hash = 14695981039346656037ULL;
-  for (int i = 0; i < atom->nlocal; i++)
-    for (const auto number : {(uint64_t) atom->tag[i], (uint64_t) atom->type[i]})
-      hash = (hash ^ number) * 1099511628211ULL;
+  const auto add = [&](uint64_t number) {
+    hash = (hash ^ number) * 1099511628211ULL;
+  };
+  add(atom->nghost);
+  add(comm->style);
+  for (int i = 0; i < atom->nlocal; i++) {
+    add(atom->tag[i]);
+    add(atom->type[i]);
+  }
   return hash;
 }
 

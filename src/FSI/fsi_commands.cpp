@@ -288,7 +288,7 @@ void FSIDump::command(int narg, char **arg)
   if (!fields.empty())
     input->one(
         fmt::format("compute fsi_dump {} fsi/atom {}", group, utils::join_words(fields, " ")));
-  input->one(fmt::format("dump fsi_dump {} custom 1 {} {}", group, file, columns));
+  input->one(fmt::format("dump fsi_dump {} custom 1 \"{}\" {}", group, file, columns));
   input->one(fmt::format("dump_modify fsi_dump every/time {} time yes sort id{}", every, names));
 }
 

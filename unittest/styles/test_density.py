@@ -37,6 +37,17 @@ def test_summation(n, kernel):
 
 
 @BOTH
+def test_psi_of_a_run(n):
+    """Of where particles are at the end of a step, half a step on from where sums of density are:
+    4 % here."""
+    x, v = cloud(n, 0.1, vmax=3.0)
+    with Scene(x, v, dim=len(n), dx=0.1, dt=2e-3, commands=["compute psi all fsi/atom psi"]) as s:
+        psi = s.run(3).compute("psi", columns=False)
+        close(psi, psi_of(s.get("x"), s.kernel), ROUND_OFF)
+        assert np.abs(psi / psi_of(s.get("x") - 1e-3 * s.get("v"), s.kernel) - 1).max() > 0.02
+
+
+@BOTH
 def test_whose_neighbors_count(n):
     """Fluids sum over all neighbors; solids over their own body, or over all in mode summation."""
     x, _ = cloud(n, 0.1, seed=2)

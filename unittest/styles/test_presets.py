@@ -136,9 +136,9 @@ def test_bad_lines(tmp_path, line, word):
 
 @pytest.mark.parametrize("dim", (2, 3))
 def test_dump_has_columns_of_these_names(tmp_path, dim):
-    end = "fsi/dump all 0.0005 p shear/rate file some.dump\nfsi/run 0.001"
+    end = 'fsi/dump all 0.0005 p shear/rate file "some of it.dump"\nfsi/run 0.001'
     state(tmp_path, water("preset closed 2", "fix 1 all fsi 0.01", dim, end=end))
-    lines = (tmp_path / "some.dump").read_text().splitlines()
+    lines = (tmp_path / "some of it.dump").read_text().splitlines()
     columns = "id type mol x y" + (" z vx vy vz" if dim == 3 else " vx vy") + " p shear/rate"
     assert lines.count(f"ITEM: ATOMS {columns}") == 3    # at 0, 0.0005 and 0.001
     times = [float(after) for line, after in zip(lines, lines[1:]) if line == "ITEM: TIME"]

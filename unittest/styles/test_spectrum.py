@@ -4,7 +4,7 @@ natural frequency."""
 import numpy as np
 import pytest
 
-from scenes import run, run_scene
+from scenes import lammps, run, run_scene
 
 from fsi import series
 
@@ -137,8 +137,11 @@ def test_samples_of_several_runs(tmp_path):
 
 
 def test_restart_goes_on(tmp_path):
-    """Bit for bit: samples come back with the restart file, and the next step adds the next one."""
-    physics = tones((31.3, 0.5), (12.7, 1.5)) + "fix s all fsi/spectrum 3 v_s peaks 2 file {}.csv\n"
+    """Bit for bit: samples come back with the restart file, and the next step adds the next one; the
+    virial is computed for it."""
+    physics = ("compute p all pressure NULL virial\n"
+               + tones((31.3, 0.5), (12.7, 1.5), more="0.3+0*c_p")
+               + "fix s all fsi/spectrum 3 v_s peaks 2 file {}.csv\n")
     run(tmp_path, EMPTY + physics.format("whole") + "run 501\nwrite_restart half\nrun 500\n"
         + REPORT)
     again = "read_restart half\npair_style zero 0.1\npair_coeff * *\n" + physics.format(
@@ -146,6 +149,20 @@ def test_restart_goes_on(tmp_path):
     result = run(tmp_path, again)
     assert (tmp_path / "whole.csv").read_bytes() == (tmp_path / "again.csv").read_bytes()
     assert peaks(result)[4] == 334
+
+
+@pytest.mark.parametrize("reset, good", [("0", False), ("400 time 0.05", False),
+                                         ("400 time 0.1", True)])
+def test_restart_at_another_time(tmp_path, reset, good):
+    """Samples of a file cannot be followed by earlier ones, which were left out without a word."""
+    physics = tones((31.3, 0.5)) + "fix s all fsi/spectrum 1 v_s peaks 2\n"
+    run(tmp_path, EMPTY + physics + "run 100\nwrite_restart half\n")
+    again = lammps(tmp_path, f"read_restart half\nreset_timestep {reset}\npair_style zero 0.1\n"
+                   "pair_coeff * *\n" + physics + "run 50\n" + REPORT)
+    if good:
+        assert again.status == 0 and peaks(again)[4] == 151
+    else:
+        assert "is before its last sample, of step 100, time 0.1: no reset_timestep" in again.output
 
 
 def test_time_steps_that_change(tmp_path):

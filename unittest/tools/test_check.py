@@ -186,6 +186,25 @@ def test_what_a_deck_may_read(folder):
     assert {path.name for path in decks} == {"in.deck", "bodies.in", "more.in"}
 
 
+def test_other_places(folder, capsys, monkeypatch):
+    """What is read from the folder above and from names with spaces; outputs with absolute paths,
+    in that folder and by fsi/dump, which are as they were; a log of another name."""
+    (folder / "a b.data").write_text((folder / "bodies.in").read_text())
+    (folder / "here").mkdir()
+    monkeypatch.chdir(folder / "here")
+    deck = (folder / "in.deck").read_text().replace("include bodies.in", 'include "../a b.data"')
+    deck = deck.replace("mine.dump", f"{folder}/mine.dump").replace(
+        "file mine.csv", "file ${where}/mine.csv").replace("out/mine.data", "../out/mine.data")
+    (folder / "here/in.deck").write_text(f"variable where index {folder}\nlog my.log\n" + deck)
+    status, text = says(capsys)
+    assert status == 0 and "100 particles, 100 steps; nothing to warn of" in text, text
+    assert all((folder / name).read_text() == "of an earlier run"
+               for name in ("mine.dump", "mine.csv", "out/mine.data"))
+    (folder / "here/big.dump").write_text("")
+    (folder / "here/in.deck").write_text("fsi/dump all 0.1 p file big.dump\n")
+    assert check.inputs(folder / "here/in.deck", {}, folder / "here")[0] == set()
+
+
 def test_no_deck_and_no_lammps(folder, monkeypatch):
     with pytest.raises(SystemExit, match="none is not a file|none.in is not a file"):
         cli.main(["check", "none.in"])

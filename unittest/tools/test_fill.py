@@ -229,3 +229,16 @@ def test_corners_that_were_rounded_apart(tmp_path, off, closed):
     else:
         with pytest.raises(SystemExit, match="not closed: .* the first near "):
             fill.main([path, "0.1", str(tmp_path / "box.data")])
+
+
+@pytest.mark.parametrize("between", ("\n", " \t\n", ",\n", "\n\n"))
+def test_lines_between_outlines(tmp_path, between):
+    """A square with a square hole, whatever blank an export leaves between the two; the second is
+    no part of the first. Numbers with exponents are no options."""
+    path = tmp_path / "two.csv"
+    path.write_text("0,0\n1,0\n1,1\n0,1\n" + between + "0.3,0.3\n0.7,0.3\n0.7,0.7\n0.3,0.7\n")
+    fill.main([str(path), "0.1", str(tmp_path / "two.data"), "--origin", "-1e-3", "-2.5E-1"])
+    x = atoms(tmp_path / "two.data")[:, 5:7]
+    assert len(x) == 100 - 16 and x[:, 1].min() < -0.15
+    with pytest.raises(SystemExit, match="fsi fill: .*nowhere"):
+        cli.main(["fill", str(path), "0.1", str(tmp_path / "nowhere/two.data")])

@@ -3,6 +3,7 @@ what ParaView would read is decoded anew."""
 
 import base64
 import contextlib
+import gzip
 import os
 import re
 import shutil
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 from scenes import run
 
-from fsi import animate, cli, dump, launch, paths, plot, report, series, vtk
+from fsi import animate, cli, dump, launch, log, paths, plot, report, series, vtk
 
 DUMP = """ITEM: TIMESTEP
 {step}
@@ -623,3 +624,103 @@ run 8
     assert len(series.read_ave(tmp_path / "cut.ave").time) == 2
     with pytest.raises(ValueError, match="not a file of fix ave/time"):
         series.read_ave(tmp_path / "print.csv")
+
+
+def test_files_that_runs_go_on_with(tmp_path):
+    """LAMMPS writes the titles again where a continued run appends; rows beyond its start are of
+    the run that was given up."""
+    deck = """units lj
+region box block 0 4 0 4 0 4
+lattice sc 1
+create_box 1 box
+create_atoms 1 box
+mass 1 1
+pair_style zero 1
+pair_coeff * *
+fix 1 all nve
+velocity all set {v} 2 0
+compute v all reduce sum vx vy
+reset_timestep {start}
+variable v equal c_v[1]/64
+fix a all ave/time 4 1 4 c_v[1] {how} scalar.ave
+fix b all ave/time 4 1 4 c_v mode vector {how} vector.ave
+fix c all print 4 "$(step),$(v_v)" {how} print.csv title "step,v" screen no
+run {n}
+"""
+    run(tmp_path, deck.format(v=1, start=0, how="file", n=12))
+    with (tmp_path / "print.csv").open("a") as file:
+        file.write("16,1.0")  # it was killed
+    run(tmp_path, deck.format(v=3, start=8, how="append", n=12))
+    found = series.read_any(tmp_path / "print.csv")
+    np.testing.assert_array_equal(found.time, [0, 4, 8, 12, 16, 20])
+    np.testing.assert_allclose(found["v"], [1, 1, 3, 3, 3, 3])
+    found = series.read_any(tmp_path / "scalar.ave")
+    np.testing.assert_array_equal(found.time, [0, 4, 8, 12, 16, 20])
+    np.testing.assert_allclose(found["c_v[1]"], 64 * np.array([1, 1, 3, 3, 3, 3]))
+    found = series.rows(series.read_any(tmp_path / "vector.ave").columns)
+    np.testing.assert_allclose(found["c_v[1]"], 64 * np.array([1, 1, 3, 3, 3, 3]))
+
+
+def test_runs_without_a_new_setup(tmp_path):
+    """`pre no` leaves out the line of memory before the table, `post no` LAMMPS' times after it."""
+    run(tmp_path, """units lj
+region box block 0 4 0 4 0 4
+lattice sc 1
+create_box 1 box
+create_atoms 1 box
+mass 1 1
+pair_style zero 1
+pair_coeff * *
+fix 1 all nve
+variable t equal step*2
+thermo 2
+thermo_style custom step v_t
+run 4
+print "these are words"
+run 6 pre no post no
+run 2 pre no
+""")
+    found = log.read(tmp_path / "log.lammps")
+    assert [r.steps for r in found.finished] == [4, 6, 2]
+    assert [bool(r.times) for r in found.runs] == [True, False, True]
+    steps = [0, 2, 4, 4, 6, 8, 10, 10, 12]
+    np.testing.assert_array_equal(found.column("Step"), steps)
+    np.testing.assert_array_equal(found.column("v_t"), np.multiply(2, steps))
+
+
+@pytest.mark.parametrize("cut", (0.95, 0.7, 0.52))
+@pytest.mark.parametrize("name", ("some.dump", "some.dump.gz"))
+def test_dump_that_is_cut_off(tmp_path, frames, capsys, name, cut):
+    """Of a run that was killed: in a row, in the header, in what gzip had written."""
+    text = frames.read_bytes()
+    text = text if name == "some.dump" else gzip.compress(text, 0)
+    (tmp_path / name).write_bytes(text[:int(cut * len(text))])
+    with pytest.warns(UserWarning, match="the last frame is incomplete and left out"):
+        cli.main(["dump", str(tmp_path / name)])
+    assert "1 frames from t = 0 to 0, 3 particles" in capsys.readouterr().out
+
+
+def test_dumps_of_other_decks(tmp_path, frames, capsys):
+    """Columns of words; frames without particles; no positions."""
+    lines = frames.read_text().replace("mol x", "mol element x").splitlines()
+    words = tmp_path / "words.dump"
+    words.write_text("\n".join(re.sub(r"^(\d \d \d )", r"\1H2O ", line) for line in lines) + "\n")
+    assert [list(f["vx"]) for f in dump.read(words)] == [list(f["vx"]) for f in dump.read(frames)]
+    nothing = "\n".join(DUMP.format(step=9, time=0.1, p=0).splitlines()[:-3]).replace(
+        "ATOMS\n3", "ATOMS\n0") + "\n"
+    empty = tmp_path / "empty.dump"
+    for text in (nothing + frames.read_text(), frames.read_text() + nothing):
+        empty.write_text(text)
+        cli.main(["dump", str(empty)])
+        assert "3 frames" in capsys.readouterr().out
+        cli.main(["dump", str(empty), f"plot={tmp_path / 'empty.png'}"])
+        assert (tmp_path / "empty.png").stat().st_size > 0
+        assert vtk.convert(empty).exists()
+    empty.write_text(nothing)
+    with pytest.raises(SystemExit, match="the dump has no particles"):
+        cli.main(["dump", str(empty), f"plot={tmp_path / 'empty.png'}"])
+    unwrapped = tmp_path / "unwrapped.dump"
+    unwrapped.write_text(frames.read_text().replace("x y vx", "xu yu vx"))
+    for command in (["vtk", str(unwrapped)], ["dump", str(unwrapped), "plot=none.png"]):
+        with pytest.raises(SystemExit, match="has no column.* x and .*it has .*xu, yu"):
+            cli.main(command)
