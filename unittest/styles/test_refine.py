@@ -774,23 +774,26 @@ def test_types_spacings_and_distances_follow(tmp_path, ranks):
                                                                          last["rest"])
 
 
-@pytest.mark.parametrize("dim, zone", [(2, "two blocks"), (2, "moving"), (3, "sphere")])
+@pytest.mark.parametrize("dim, zone",
+                         [(2, "two blocks"), (2, "moving"), (2, "corner"), (3, "sphere")])
 def test_zones_around_a_region(dim, zone):
     """Before the first step each particle is of the level of its distance from the region, by the
     kernel's support of the coarser level and a spacing from one level to the next; and what leaves
-    merges again."""
+    merges again. A disc in the box' corner goes on in the others, which are its images."""
     n, levels = ((40, 40), 3) if dim == 2 else ((22, 22, 22), 2)
     x, size = lattice(n, DX), [k * DX for k in n] + [0] * (3 - dim)
     spacing = DX * 2.0**(-np.arange(levels + 1) / dim)
     wider = np.append(np.cumsum((3 * spacing[:-2] + spacing[1:-1])[::-1])[::-1], 0.0)
     blocks = {"two blocks": [((0.9, 0.95), (1.0, 1.1)), ((1.0, 1.0), (1.2, 1.05))],
-              "moving": [((0.95, 0.95), (1.05, 1.1))], "sphere": []}[zone]
+              "moving": [((0.95, 0.95), (1.05, 1.1))]}.get(zone, [])
     regions = {"two blocks": ["region one block 0.9 1.0 0.95 1.1 INF INF units box",
                               "region two block 1.0 1.2 1.0 1.05 INF INF units box",
                               "region zone union 2 one two"],
                "moving": ["variable place equal 0.5*(step<5)", "region zone block 0.45 0.55 0.95 "
                           "1.1 INF INF units box move v_place NULL NULL"],
+               "corner": ["region zone cylinder z 0 0 0.08 INF INF units box"],
                "sphere": ["region zone sphere 0.55 0.55 0.55 0.08 units box"]}[zone]
+    middle = 0.55 if zone == "sphere" else 0.0
     with Scene(x, dim=dim, dx=DX, box=([0, 0, 0], size), boundary="p p p",
                materials=(WATER,) * (levels + 1), fluid="sound 15 tension yes", dt=1e-6,
                commands=("pair_coeff * * NULL m0 levels", *regions, "fix ref all fsi/refine 10 "
@@ -799,7 +802,8 @@ def test_zones_around_a_region(dim, zone):
         at = s.get("x")[:, :dim]
         outside = [np.linalg.norm(
             np.maximum(0, np.maximum(np.subtract(low, at), np.subtract(at, high))),
-            axis=1) for low, high in blocks] or [np.linalg.norm(at - 0.55, axis=1) - 0.08]
+            axis=1) for low, high in blocks] or [
+                np.linalg.norm((at - middle + size[0] / 2) % size[0] - size[0] / 2, axis=1) - 0.08]
         # as far halves go from where the old one was
         r, half = np.min(outside, axis=0), 0.25 * dim**0.5 * spacing[0]
         level = s.get("type") - 1
