@@ -115,7 +115,8 @@ void FixFSIRefine::read_types(const std::vector<std::string> &words)
                MAX_LEVELS);
 }
 
-// those that pair_coeff keeps, as many as there are levels down to the spacing
+// Those that pair_coeff keeps. Of them as many are wanted as there are levels down to the spacing;
+// of the others, of a fix before this one, all particles merge
 void FixFSIRefine::find_types()
 {
   const auto &kept = disc->types_of_levels;
@@ -135,9 +136,10 @@ void FixFSIRefine::find_types()
                "{} finest: from {:g} to {:g} there are {} levels, for which pair_coeff keeps {} "
                "atom types: expected create_box {} and, as the last word of pair_coeff, levels",
                label, coarse, finest_dx, number, given, atom->ntypes + number - given);
-  types.assign(kept.begin(), kept.begin() + number + 1);
+  types.assign(kept.begin(), kept.begin() + std::min((size_t) given, MAX_LEVELS - 1) + 1);
   level_of.assign(atom->ntypes + 1, -1);
-  for (int k = 0; k <= number; k++) level_of[types[k]] = k;
+  for (size_t k = 0; k < types.size(); k++) level_of[types[k]] = k;
+  finest = number;
 }
 
 void FixFSIRefine::init()
@@ -145,10 +147,11 @@ void FixFSIRefine::init()
   FixFSI::find(lmp, label)->link(disc, step, ledger, ghosts, population);
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", label);
+  finest = (int) types.size() - 1;
   if (finest_dx > 0.0) find_types();
   check_types();
   check_others();
-  zones->init(*disc, types);
+  zones->init(*disc, {types.begin(), types.begin() + finest + 1});
   open_ends = fixes_of<FixFSIInlet>(lmp);
   next_reneighbor = (update->ntimestep / every + 1) * every;
   warned = false;
@@ -160,7 +163,7 @@ void FixFSIRefine::check_types() const
 {
   const double expected = std::pow(2.0, -1.0 / disc->dim);
   const State &first = disc->state[types[0]];
-  for (int k = 0; k <= finest(); k++) {
+  for (int k = 0; k < (int) types.size(); k++) {
     const State &s = disc->state[types[k]];
     if (s.species != FLUID)
       error->all(FLERR, "{}: atom type {} is no fluid: its material is {}", label, types[k],
@@ -218,7 +221,7 @@ void FixFSIRefine::setup_pre_exchange()
 {
   for (auto *end : open_ends) end->setup_pre_exchange();
   const bool due = update->ntimestep % every == 0 && last_event != update->ntimestep;
-  for (int k = 0; k < (due ? finest() : 1); k++) event(due, false);
+  for (int k = 0; k < (due ? finest : 1); k++) event(due, false);
 }
 
 void FixFSIRefine::pre_exchange()
@@ -290,14 +293,16 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
     if (now < 0) continue;
     check_mass(i);
     int wish = 0;
-    for (int k = 1; k <= finest(); k++)
+    for (int k = 1; k <= finest; k++)
       if (zones->has(k, i, 0.0)) wish |= 1 << k;
     const bool leaves = in_open_end(i, wish);
-    if (may_split && now < finest() && (wish & 1 << (now + 1))) wish |= SPLIT;
+    if (may_split && now < finest && (wish & 1 << (now + 1))) wish |= SPLIT;
     if (may_merge && now > 0 && !leaves && !(wish & 1 << now)) {
       const double margin = disc->dx_of(types[now - 1]);
-      if (!zones->has(now, i, margin))
-        wish |= zones->has(now, i, FAR * margin) ? MERGE : MERGE | EAGER;
+      const auto within = [&](double distance) {
+        return now <= finest && zones->has(now, i, distance);
+      };
+      if (!within(margin)) wish |= within(FAR * margin) ? MERGE : MERGE | EAGER;
     }
     carried[i] = wish;
   }
@@ -342,7 +347,7 @@ bool FixFSIRefine::in_open_end(int i, int wish) const
 // coarser one's kernel. As far as there is fluid.
 void FixFSIRefine::check_zones() const
 {
-  for (int k = 1; k < finest(); k++) {
+  for (int k = 1; k < finest; k++) {
     const double support = disc->resolution[types[k - 1]].cut;
     const Cells inner(atom, disc->dim, support, [&](int j) {
       return level(j) >= 0 && (carried[j] & 1 << (k + 1));
@@ -374,7 +379,7 @@ void FixFSIRefine::warn_of_bodies()
   });
   const auto coarse = find_particles(atom, world, [&](int i) {
     const int now = level(i);
-    if (now < 0 || now == finest() || (carried[i] & SPLIT)) return false;
+    if (now < 0 || now >= finest || (carried[i] & SPLIT)) return false;
     const double dx = disc->dx_of(type[i]);
     return bodies.any_within(atom->x[i], dx, [&](int j) {
       return dx > TOO_COARSE * disc->dx_of(type[j]);

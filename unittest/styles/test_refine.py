@@ -825,6 +825,26 @@ def test_given_again_between_runs(tmp_path):
     assert not differing(whole, parts)
 
 
+def test_given_again_with_fewer_levels():
+    """Water that flows through a zone of two levels, then of one: what is of the second merges,
+    there and elsewhere, but for a few that wait for a partner."""
+    with Scene(lattice((24, 24), DX), lattice((24, 24), 0) + [3.0, 0, 0], dx=DX,
+               box=([0, 0, 0], [1.2, 1.2, 0]), boundary="p p p", materials=(WATER,) * 3,
+               fluid="sound 15 tension yes density/diffusion 0.1 background 2000", dt=1e-3,
+               commands=("pair_coeff * * NULL m0 levels",
+                         "region zone block 0.4 0.8 0.4 0.8 INF INF units box",
+                         "fix ref all fsi/refine 10 region zone finest 0.025")) as s:
+        go(s, 40)
+        before, mass = (s.get("type") == 3).sum(), exact_mass(s)
+        s.run_lines("unfix ref",
+                    f"fix ref all fsi/refine 10 region zone finest {DX * FINER[2]!r}")
+        go(s, 100)
+        after = (s.get("type") == 3).sum()
+        print(before, after)
+        assert before > 250 and after < 0.1 * before and exact_mass(s) == mass
+        assert (s.get("type") == 2).sum() > 100
+
+
 BAD = {
     "3": r"Illegal fix fsi/refine command: missing argument|requires keyword types",
     "0 types 1 2 region one": r"Fix fsi/refine N 0 must be",
