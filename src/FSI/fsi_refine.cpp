@@ -130,8 +130,9 @@ void Zones::init(const Discretization &disc, const std::vector<int> &types)
 
 std::string Zones::names(int k) const
 {
-  return regions.empty() || nested ? ""
-                                   : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
+  if (regions.empty()) return "";
+  if (!nested) return fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
+  return can_move ? " (what moves is not continued across a periodic face)" : "";
 }
 
 void Zones::find(const Discretization &disc, double beyond, double time)

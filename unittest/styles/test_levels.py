@@ -441,6 +441,8 @@ def test_fluid_finer_than_dx(tmp_path, case):
     frames = [result.frames()[-1] for result in last]
     for quantity in ("x", "v", "rho"):
         assert difference(*frames, quantity) < 1e-10, quantity
+    said = [re.findall(r"WARNING.*|.* acts like .*", result.output) for result in last]
+    assert said[0] == said[1] and len(said[0]) > 1
     reflected = int(re.search(r"^(\d+) reflected", last[0].output, re.M)[1])
     assert (reflected > 0) == (speed < 0)
     if case == "lines":    # linear between points dx/4 apart: 0.02 dx
