@@ -54,6 +54,7 @@ static constexpr int SWEEPS = 12;         // of choosing a direction again
 static constexpr size_t MAX_LEVELS = 12;
 static constexpr double SAME = 1.0e-12;      // what comes from one material
 static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
+static constexpr int PASSES = 3;             // out of guards: the next wall particle may be as near
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label("Fix fsi/refine"), zones(new Zones(lmp, label))
@@ -525,7 +526,6 @@ void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells 
 // both halves are as much farther from it
 void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
 {
-  static constexpr int PASSES = 3;    // the next wall particle may be as near
   const double *const x = atom->x[two.i], fine = disc->dx_of(types[level(two.i) + 1]);
   for (int pass = 0; pass < 2 * PASSES; pass++) {
     const double to = pass % 2 ? 1.0 : -1.0;
@@ -534,6 +534,20 @@ void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
     const auto away = disc->out_of_guards(atom, cells, fine, at);
     for (int d = 0; d < 3; d++) two.off[d] += away[d];
   }
+}
+
+// likewise what two become: the guard of the coarser level is wider
+void FixFSIRefine::keep_off_walls(std::vector<Union> &list) const
+{
+  const Cells walls(atom, disc->dim, disc->cut, [&](int j) {
+    return disc->state[atom->type[j]].species == RIGID;
+  });
+  for (auto &merged : list)
+    for (int pass = 0; pass < PASSES; pass++) {
+      const double coarse = disc->dx_of(types[level(merged.i) - 1]);
+      const auto away = disc->out_of_guards(atom, walls, coarse, merged.x);
+      for (int d = 0; d < 3; d++) merged.x[d] += away[d];
+    }
 }
 
 std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
@@ -647,6 +661,7 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
     local[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
     for (int d = 0; d < 3; d++) local[SPIN + d] += reduced * spin[d];
   }
+  if (!list.empty()) keep_off_walls(list);
   return list;
 }
 

@@ -415,9 +415,10 @@ def test_balance_where_pairs_merge_across_the_edge(settle):
 
 
 @pytest.mark.parametrize("guard", ["auto", "0"])
-def test_energy_of_splitting_beside_a_wall(guard):
-    """Halves are not within the guard of a wall of particles, which would push them with energy out
-    of nothing: 18 J of 13 J that this water exchanges."""
+@pytest.mark.parametrize("zone", ["comes", "goes"])
+def test_energy_beside_a_wall(guard, zone):
+    """Halves, and what two become, are not within the guard of a wall of particles, which would
+    push them with energy out of nothing: 18 and 30 J of 13 J that this water exchanges."""
     fine = 1.2 / 34
     water, bed = lattice((24, 16), DX), lattice((34, 4), fine, origin=np.array([0, -4 * fine]))
     x, type_ = np.concatenate([water, bed]), np.repeat([1, 3], [len(water), len(bed)])
@@ -428,13 +429,13 @@ def test_energy_of_splitting_beside_a_wall(guard):
                commands=(f"fix w held fsi/wall/particle guard {guard}",
                          "fix g moving gravity 9.81 vector 0 -1 0",
                          "fsi/set moving hydrostatic 0.8",
-                         "variable down equal -0.9*(step>50)",
+                         f"variable down equal -0.9*(step{'>' if zone == 'comes' else '<='}50)",
                          "region z block INF INF 0.9 1.3 INF INF units box move NULL v_down NULL",
                          "fix ref moving fsi/refine 5 types 1 2 region z",
                          "compute e all fsi/energy")) as s:
         before = energy(go(s, 50))
         after = [energy(go(s, 20)) for _ in range(3)]
-        assert outputs(s)[SPLITS] > 150
+        assert outputs(s)[SPLITS if zone == "comes" else MERGES] > 150
         print(guard, np.array(after) - before)
         assert np.abs(np.array(after) - before).max() < 0.05 * 13
 
