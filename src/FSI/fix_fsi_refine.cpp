@@ -417,7 +417,7 @@ double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
   for (const auto &wall : step->walls.wall) {
     if (!wall.spans(x, dx)) continue;
     const double s = wall.distance(x);
-    if (wall.finite && s < -dx) continue;
+    if (wall.finite && s <= 0.0) continue;    // nothing splits through it: see Sight
     if (s <= 0.0) return HUGE_VAL;
     const double q = 0.5 * dx / s;
     sum += q * q * q * q;

@@ -515,6 +515,28 @@ def test_walls_and_edges():
                 and y[:, 0].max() < 1.2)
 
 
+@pytest.mark.parametrize("sides", ["xlo", "xlo xhi"])
+def test_fluid_behind_a_segment_splits(sides):
+    """Of a mirror wall, on its own or with one for that side: all halves are on their side, and not
+    much nearer to it than the shaken lattice was."""
+    x, v = cloud((24, 24), DX, jitter=0.3)
+    walls = " ".join(f"{side} 0.6 range y 0.2 1.0" for side in sides.split())
+    with box_scene(x, zone="block INF INF INF INF INF INF",
+                   commands=(f"fix walls all fsi/wall/mirror {walls}",), boundary="f f p",
+                   refine="region zone settle 0") as s:
+        beside = lambda y: (np.abs(y[:, 0] - 0.6) < 0.2) & (np.abs(y[:, 1] - 0.6) < 0.35)
+        side = lambda: dict(zip(s.get("id"), s.get("x")[:, 0] > 0.6))
+        before = side()
+        go(s, 0)
+        y, after = s.get("x"), side()
+        seen = np.abs(y[beside(y), 0] - 0.6)
+        # behind one that stands alone they are as near as they like
+        assert s.n == 2 * len(x) and (sides == "xlo" or seen.min() > 0.07 * DX)
+        assert all(after[i] == before[i] for i, at in zip(s.get("id"), y)
+                   if i in before and abs(at[1] - 0.6) < 0.35)
+        assert abs((y[beside(y), 0] > 0.6).mean() - (x[beside(x), 0] > 0.6).mean()) < 0.03
+
+
 PHYSICS = """pair_style fsi/fluid sound 30 tension yes density/diffusion 0.1 artificial/visc 0.02 0
 pair_coeff * * water.fsi water water water
 fix sph all fsi 0.05 wendland 1.5 spacing 2 {fine!r} spacing 3 {finest!r}
