@@ -40,6 +40,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr double MOST = 1.0e7;    // points of one place
+static constexpr double SAME = 1.02;     // of spacings of a fluid's level and of a body in it
 static constexpr double REACH = 2.0;     // of a fit in spacings: it has enough at a corner, too
 static constexpr double INDEPENDENCE = 0.05;    // a direction has it with two rows or more
 
@@ -277,6 +278,16 @@ double ComputeFSIProbe::Place::distance_sq(const double *x, int dim) const
   return rsq;
 }
 
+// Fluids have their own level, solids that of the fluid which may be beside them
+size_t ComputeFSIProbe::level_of(int type) const
+{
+  size_t level = disc->level_of[type];
+  if (disc->state[type].species == FLUID) return level;
+  while (level + 1 < disc->levels.size() && disc->levels[level].dx > SAME * disc->dx_of(type))
+    level++;
+  return level;
+}
+
 // particles that may come within the kernel's support of a place before there are new lists
 void ComputeFSIProbe::find_near()
 {
@@ -289,7 +300,7 @@ void ComputeFSIProbe::find_near()
       if (species == FLUID ? !(atom->mask[i] & groupbit) : !place.line) continue;
       for_images(i, place, reach, [&](const Particle &p, const double *x) {
         if (place.distance_sq(x, disc->dim) < reach * reach)
-          place.near[disc->level_of[atom->type[i]]].push_back(p);
+          place.near[level_of(atom->type[i])].push_back(p);
       });
     }
   }

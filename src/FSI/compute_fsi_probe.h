@@ -95,6 +95,7 @@ class ComputeFSIProbe : public Compute, public FSI::Part {
 
   int read_place(const std::string &kind, int narg, char **arg);
   void set_grid(Place &, double dx) const;
+  size_t level_of(int type) const;
   void find_near();
   template <class F> void for_images(int i, const Place &, double reach, F) const;
   std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;

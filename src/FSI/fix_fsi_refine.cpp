@@ -54,6 +54,7 @@ static constexpr int SWEEPS = 12;         // of choosing a direction again
 static constexpr size_t MAX_LEVELS = 12;
 static constexpr double SAME = 1.0e-12;      // what comes from one material
 static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
+static constexpr int PASSES = 3;             // out of guards: the next wall particle may be as near
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label("Fix fsi/refine"), zones(new Zones(lmp, label))
@@ -115,7 +116,8 @@ void FixFSIRefine::read_types(const std::vector<std::string> &words)
                MAX_LEVELS);
 }
 
-// those that pair_coeff keeps, as many as there are levels down to the spacing
+// Those that pair_coeff keeps. Of them as many are wanted as there are levels down to the spacing;
+// of the others, of a fix before this one, all particles merge
 void FixFSIRefine::find_types()
 {
   const auto &kept = disc->types_of_levels;
@@ -135,9 +137,10 @@ void FixFSIRefine::find_types()
                "{} finest: from {:g} to {:g} there are {} levels, for which pair_coeff keeps {} "
                "atom types: expected create_box {} and, as the last word of pair_coeff, levels",
                label, coarse, finest_dx, number, given, atom->ntypes + number - given);
-  types.assign(kept.begin(), kept.begin() + number + 1);
+  types.assign(kept.begin(), kept.begin() + std::min((size_t) given, MAX_LEVELS - 1) + 1);
   level_of.assign(atom->ntypes + 1, -1);
-  for (int k = 0; k <= number; k++) level_of[types[k]] = k;
+  for (size_t k = 0; k < types.size(); k++) level_of[types[k]] = k;
+  finest = number;
 }
 
 void FixFSIRefine::init()
@@ -145,10 +148,11 @@ void FixFSIRefine::init()
   FixFSI::find(lmp, label)->link(disc, step, ledger, ghosts, population);
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", label);
+  finest = (int) types.size() - 1;
   if (finest_dx > 0.0) find_types();
   check_types();
   check_others();
-  zones->init(*disc, types);
+  zones->init(*disc, {types.begin(), types.begin() + finest + 1});
   open_ends = fixes_of<FixFSIInlet>(lmp);
   next_reneighbor = (update->ntimestep / every + 1) * every;
   warned = false;
@@ -160,7 +164,7 @@ void FixFSIRefine::check_types() const
 {
   const double expected = std::pow(2.0, -1.0 / disc->dim);
   const State &first = disc->state[types[0]];
-  for (int k = 0; k <= finest(); k++) {
+  for (int k = 0; k < (int) types.size(); k++) {
     const State &s = disc->state[types[k]];
     if (s.species != FLUID)
       error->all(FLERR, "{}: atom type {} is no fluid: its material is {}", label, types[k],
@@ -218,7 +222,7 @@ void FixFSIRefine::setup_pre_exchange()
 {
   for (auto *end : open_ends) end->setup_pre_exchange();
   const bool due = update->ntimestep % every == 0 && last_event != update->ntimestep;
-  for (int k = 0; k < (due ? finest() : 1); k++) event(due, false);
+  for (int k = 0; k < (due ? finest : 1); k++) event(due, false);
 }
 
 void FixFSIRefine::pre_exchange()
@@ -290,14 +294,16 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
     if (now < 0) continue;
     check_mass(i);
     int wish = 0;
-    for (int k = 1; k <= finest(); k++)
+    for (int k = 1; k <= finest; k++)
       if (zones->has(k, i, 0.0)) wish |= 1 << k;
     const bool leaves = in_open_end(i, wish);
-    if (may_split && now < finest() && (wish & 1 << (now + 1))) wish |= SPLIT;
+    if (may_split && now < finest && (wish & 1 << (now + 1))) wish |= SPLIT;
     if (may_merge && now > 0 && !leaves && !(wish & 1 << now)) {
       const double margin = disc->dx_of(types[now - 1]);
-      if (!zones->has(now, i, margin))
-        wish |= zones->has(now, i, FAR * margin) ? MERGE : MERGE | EAGER;
+      const auto within = [&](double distance) {
+        return now <= finest && zones->has(now, i, distance);
+      };
+      if (!within(margin)) wish |= within(FAR * margin) ? MERGE : MERGE | EAGER;
     }
     carried[i] = wish;
   }
@@ -342,7 +348,7 @@ bool FixFSIRefine::in_open_end(int i, int wish) const
 // coarser one's kernel. As far as there is fluid.
 void FixFSIRefine::check_zones() const
 {
-  for (int k = 1; k < finest(); k++) {
+  for (int k = 1; k < finest; k++) {
     const double support = disc->resolution[types[k - 1]].cut;
     const Cells inner(atom, disc->dim, support, [&](int j) {
       return level(j) >= 0 && (carried[j] & 1 << (k + 1));
@@ -374,7 +380,7 @@ void FixFSIRefine::warn_of_bodies()
   });
   const auto coarse = find_particles(atom, world, [&](int i) {
     const int now = level(i);
-    if (now < 0 || now == finest() || (carried[i] & SPLIT)) return false;
+    if (now < 0 || now >= finest || (carried[i] & SPLIT)) return false;
     const double dx = disc->dx_of(type[i]);
     return bodies.any_within(atom->x[i], dx, [&](int j) {
       return dx > TOO_COARSE * disc->dx_of(type[j]);
@@ -411,7 +417,7 @@ double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
   for (const auto &wall : step->walls.wall) {
     if (!wall.spans(x, dx)) continue;
     const double s = wall.distance(x);
-    if (wall.finite && s < -dx) continue;
+    if (wall.finite && s <= 0.0) continue;    // nothing splits through it: see Sight
     if (s <= 0.0) return HUGE_VAL;
     const double q = 0.5 * dx / s;
     sum += q * q * q * q;
@@ -520,7 +526,6 @@ void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells 
 // both halves are as much farther from it
 void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
 {
-  static constexpr int PASSES = 3;    // the next wall particle may be as near
   const double *const x = atom->x[two.i], fine = disc->dx_of(types[level(two.i) + 1]);
   for (int pass = 0; pass < 2 * PASSES; pass++) {
     const double to = pass % 2 ? 1.0 : -1.0;
@@ -529,6 +534,20 @@ void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
     const auto away = disc->out_of_guards(atom, cells, fine, at);
     for (int d = 0; d < 3; d++) two.off[d] += away[d];
   }
+}
+
+// likewise what two become: the guard of the coarser level is wider
+void FixFSIRefine::keep_off_walls(std::vector<Union> &list) const
+{
+  const Cells walls(atom, disc->dim, disc->cut, [&](int j) {
+    return disc->state[atom->type[j]].species == RIGID;
+  });
+  for (auto &merged : list)
+    for (int pass = 0; pass < PASSES; pass++) {
+      const double coarse = disc->dx_of(types[level(merged.i) - 1]);
+      const auto away = disc->out_of_guards(atom, walls, coarse, merged.x);
+      for (int d = 0; d < 3; d++) merged.x[d] += away[d];
+    }
 }
 
 std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
@@ -642,6 +661,7 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
     local[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
     for (int d = 0; d < 3; d++) local[SPIN + d] += reduced * spin[d];
   }
+  if (!list.empty()) keep_off_walls(list);
   return list;
 }
 

@@ -73,7 +73,8 @@ class FixFSIRefine : public Fix {
   int every, settle_steps = 30;
   double finest_dx = 0.0;                     // from which types follow; 0: they are given
   std::vector<int> types, level_of;           // from the coarsest on; per type, -1: none of them
-  const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 on are
+  int finest = 0;                             // level that is wanted
+  const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 to that are
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
   FSI::Ledger *ledger = nullptr;
@@ -91,7 +92,6 @@ class FixFSIRefine : public Fix {
   std::vector<int> chosen;    // per local one: index of its partner
   double local[NTOTAL] = {};
 
-  int finest() const { return (int) types.size() - 1; }
   void check_mass(int i) const;
   int level(int i) const;
   void read_types(const std::vector<std::string> &);
@@ -110,6 +110,7 @@ class FixFSIRefine : public Fix {
   void choose_directions(const std::vector<int> &which, const FSI::Cells &);
   template <int D> void slopes(Division &, const FSI::Cells &) const;
   void keep_off_walls(Division &, const FSI::Cells &) const;
+  void keep_off_walls(std::vector<Union> &) const;
   std::vector<Division> plan_divisions();
   void choose_partners();
   int best_partner(int i, const FSI::Cells &) const;

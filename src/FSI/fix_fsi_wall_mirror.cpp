@@ -218,7 +218,7 @@ std::vector<int> FixFSIWallMirror::find_outside(const InnerBox &inner)
   });
 }
 
-// after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
+// after the first drift: walls move along, and a fluid particle nearer than its guard distance, or
 // behind the wall, is reflected. A segment acts on what has come through it in this step, not on
 // what flows behind it. The ledger has velocities of the middle of a step, half a kick on, of which
 // the kick of gravity is not reflected. What that of the other forces differs by, density takes up.
@@ -226,7 +226,7 @@ void FixFSIWallMirror::post_integrate()
 {
   const Phase phase(step->profile, Profile::WALLS);
   auto *const x = vectors(atom->x), *const v = vectors(atom->v);
-  const double dth = 0.5 * update->dt, near = guard * disc->dx;
+  const double dth = 0.5 * update->dt;
 
   double fastest = 0.0;
   for (auto &w : walls) {
@@ -238,7 +238,9 @@ void FixFSIWallMirror::post_integrate()
     next_reneighbor = update->ntimestep;
   turns.clear();
 
-  for (const int i : find_outside(InnerBox(walls, near))) {
+  // dx is the coarsest fluid's
+  for (const int i : find_outside(InnerBox(walls, guard * disc->dx))) {
+    const double near = guard * disc->dx_of(atom->type[i]);
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
       if (a >= near || (w.finite && !w.spans(x[i], 0.0))) continue;
@@ -258,7 +260,7 @@ void FixFSIWallMirror::post_integrate()
         if (step->profile) step->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
       }
       reflected++;
-      turns.push_back({atom->tag[i], static_cast<int>(&w - walls.data()), vn * w.side < 0.0});
+      turns.push_back({atom->tag[i], static_cast<int>(&w - walls.data()), vn * w.side < 0.0, near});
     }
   }
 }
@@ -310,7 +312,7 @@ void FixFSIWallMirror::go_back()
     const Wall &w = walls[t->wall];
     double &x = atom->x[i][w.axis], &v = atom->v[i][w.axis];
     const double dth = atom->mask[i] & disc->mover->groupbit ? 0.5 * update->dt : 0.0;
-    x = 2.0 * (w.position + w.side * guard * disc->dx) - (x + dth * v);
+    x = 2.0 * (w.position + w.side * t->near) - (x + dth * v);
     if (t->turned) v = 2.0 * w.velocity[w.axis] - v;
     x -= dth * v;
   }

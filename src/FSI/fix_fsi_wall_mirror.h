@@ -74,6 +74,7 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
     tagint tag;
     int wall;
     bool turned;    // the velocity, too
+    double near;    // the particle's guard
   };
   std::vector<Turn> turns;
   FSI::Ledger *ledger = nullptr;

@@ -103,7 +103,10 @@ void FixFSIWallParticle::init()
   first_moment = 2 + dim * (slip ? 1 : 2);
   first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : turns ? dim : 0);
   mixed = linear && densities;
-  nsum = first_stiffness + stiffness + mixed;    // that of densities last
+  several = linear && disc->has_levels();
+  of_densities = first_stiffness + stiffness;
+  of_spacings = of_densities + mixed;
+  nsum = of_spacings + several;
   fields.set("sums over the fluid", Fields::STEP, true, sum, nsum);
   for (auto *message : {&to_ghosts, &from_ghosts}) {
     *message = std::make_unique<Message>(lmp, disc->state);
@@ -207,7 +210,7 @@ template <class F> void FixFSIWallParticle::for_pairs(size_t level, double cutsq
 // variance in all directions takes the rest for constant there.
 template <int D>
 double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p, double rho,
-                                       const double *a) const
+                                       double dx, const double *a) const
 {
   const double *const d = moments, *const dd = d + D, *const pd = dd + D * (D + 1) / 2;
   double C[D * D], adjoint[D * D], covariance[D];
@@ -218,7 +221,7 @@ double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p
   }
   for (int k = 0; k < D; k++)
     for (int l = 0; l < D; l++) covariance[k] -= rho * a[l] * C[k * D + l];
-  for (int k = 0; k < D; k++) C[k * D + k] += 0.005 * disc->dx * disc->dx;
+  for (int k = 0; k < D; k++) C[k * D + k] += 0.005 * dx * dx;
   cofactor<D>(C, adjoint);
   double sum = 0.0;
   for (int k = 0; k < D; k++)
@@ -326,7 +329,8 @@ void FixFSIWallParticle::sum_up()
         for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
       }
       if (stiffness) s[first_stiffness] += W * disc->state[type[j]].rho0 * disc->state[type[j]].csq;
-      if (mixed) s[nsum - 1] += W * disc->state[type[j]].rho0;
+      if (mixed) s[of_densities] += W * disc->state[type[j]].rho0;
+      if (several) s[of_spacings] += W * disc->levels[level].dx * disc->levels[level].dx;
       if (!slip)
         for (int k = 0; k < dim; k++)
           s[2 + dim + k] += W * (mirror.v[k] + mirror.sign[k] * v[j][k]);
@@ -384,9 +388,10 @@ void FixFSIWallParticle::end_state(bool advance)
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
     if (linear && s[0] > 0.0) {
-      const double of_fluid = mixed ? s[nsum - 1] / s[0] : fluid_density;
-      p += dim == 2 ? beyond_mean<2>(moments, s[0], s[1] / s[0], of_fluid, a)
-                    : beyond_mean<3>(moments, s[0], s[1] / s[0], of_fluid, a);
+      const double of_fluid = mixed ? s[of_densities] / s[0] : fluid_density,
+                   dx = several ? std::sqrt(s[of_spacings] / s[0]) : disc->dx;
+      p += dim == 2 ? beyond_mean<2>(moments, s[0], s[1] / s[0], of_fluid, dx, a)
+                    : beyond_mean<3>(moments, s[0], s[1] / s[0], of_fluid, dx, a);
     }
     p = std::max(p, state.floor);
     if (step->wall_stiffness) {

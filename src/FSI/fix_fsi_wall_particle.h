@@ -61,6 +61,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   bool linear = false;           // extrapolates with the gradient, not a mean
   double fluid_density = 0.0;    // at rest
   bool mixed = false;            // several fluids differ in it: each wall particle has a mean
+  bool several = false;          // spacings of fluids: likewise
   std::vector<class FixFSIMove *> movers;
   double **before = nullptr;    // velocity at the last step, and whether there was one
   std::vector<double> old;      // the same of members at the start of this one
@@ -81,7 +82,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   // per atom, over the fluid and its images: of W, p W, rho (x_wall - x) W, v W; with linear of
   // d W, d d W, p d W, d = x_wall - x; with turns of d W
   double **sum = nullptr;
-  int nsum = 0, first_moment, first_stiffness;
+  int nsum = 0, first_moment, first_stiffness, of_densities, of_spacings;
   bool turns = false;              // walls that fluid sticks to may
   std::vector<int> first, near;    // of each local member, where its neighbors in the wall begin;
                                    // these
@@ -91,7 +92,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   double force_on[3] = {};    // this group, this rank's part
 
   template <int D>
-  double beyond_mean(const double *moments, double W, double p, double rho, const double *a) const;
+  double beyond_mean(const double *moments, double W, double p, double rho, double dx,
+                     const double *a) const;
 };
 
 }    // namespace LAMMPS_NS

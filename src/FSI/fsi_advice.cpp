@@ -476,11 +476,11 @@ static double extent(const Census &c, const std::array<double, 3> &e)
     if (!c.fluid(i)) continue;
     double s = 0.0;
     for (int d = 0; d < c.disc.dim; d++) s += e[d] * c.atom->x[i][d];
-    here[0] = std::max(here[0], s);
-    here[1] = std::max(here[1], -s);
+    here[0] = std::max(here[0], s + 0.5 * c.dx(i));
+    here[1] = std::max(here[1], -s + 0.5 * c.dx(i));
   }
   MPI_Allreduce(here, ends, 2, MPI_DOUBLE, MPI_MAX, c.world);
-  return ends[0] + ends[1] + c.disc.dx;
+  return ends[0] + ends[1];
 }
 
 // What artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only
@@ -488,7 +488,8 @@ static double extent(const Census &c, const std::array<double, 3> &e)
 static void viscosity(const Census &c, int type, double speed, double length)
 {
   const State &s = c.disc.state[type];
-  const double alpha = c.fluids.alpha, nu = 0.25 * alpha * c.disc.h * s.c / (c.disc.dim + 2);
+  const double alpha = c.fluids.alpha,
+               nu = 0.25 * alpha * c.disc.h_of(type) * s.c / (c.disc.dim + 2);
   if (alpha == 0.0) return;
   std::string text = fmt::format("  artificial viscosity, alpha {:g}, of type {} acts like a "
                                  "kinematic viscosity of about {:.2g}",

@@ -130,8 +130,9 @@ void Zones::init(const Discretization &disc, const std::vector<int> &types)
 
 std::string Zones::names(int k) const
 {
-  return regions.empty() || nested ? ""
-                                   : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
+  if (regions.empty()) return "";
+  if (!nested) return fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
+  return can_move ? " (what moves is not continued across a periodic face)" : "";
 }
 
 void Zones::find(const Discretization &disc, double beyond, double time)
@@ -162,6 +163,34 @@ static bool is_near(Region *region, const double *x, double distance)
   return n > 0;
 }
 
+// The same of a region and of its images in a periodic box, also where x is in one. A region that
+// moves or is turned inside out has no bounds, and none.
+bool Zones::is_near_image(Region *region, const double *x, double distance) const
+{
+  const double bounds[3][2] = {{region->extent_xlo, region->extent_xhi},
+                               {region->extent_ylo, region->extent_yhi},
+                               {region->extent_zlo, region->extent_zhi}};
+  int n[3];
+  for (int d = 0; d < 3; d++)
+    n[d] = d < domain->dimension && domain->periodicity[d] && region->bboxflag &&
+        !region->dynamic_check();
+  for (int a = -n[0]; a <= n[0]; a++)
+    for (int b = -n[1]; b <= n[1]; b++)
+      for (int c = -n[2]; c <= n[2]; c++) {
+        const int image[3] = {a, b, c};
+        double y[3];
+        bool there = true;
+        for (int d = 0; d < 3; d++) {
+          y[d] = x[d] + image[d] * domain->prd[d];
+          there = there &&
+              (image[d] == 0 ||
+               (y[d] >= bounds[d][0] - distance && y[d] <= bounds[d][1] + distance));
+        }
+        if (there && (region->match(y[0], y[1], y[2]) || is_near(region, y, distance))) return true;
+      }
+  return false;
+}
+
 // A zone grown by a distance: is any place as far away, in a number of directions, inside?
 bool Zones::has(int k, int i, double grown) const
 {
@@ -173,8 +202,8 @@ bool Zones::has(int k, int i, double grown) const
     for (int d = 0; d < 3; d++) x[d] += ahead * atom->v[i][d];
     domain->remap(x);
   }
+  if (nested) return is_near_image(region, x, wider[k - 1] + grown);
   if (region->match(x[0], x[1], x[2])) return true;
-  if (nested) return is_near(region, x, wider[k - 1] + grown);
   if (grown == 0.0) return false;
   const auto matches = [&](const std::array<double, 3> &e, double to) {
     double at[3] = {x[0] + to * e[0], x[1] + to * e[1], x[2] + to * e[2]};

@@ -169,6 +169,7 @@ namespace FSI {
 
    private:
     void find_body();
+    bool is_near_image(Region *, const double *x, double distance) const;
     const std::string label;
     std::vector<std::string> region_ids;
     std::vector<Region *> regions;

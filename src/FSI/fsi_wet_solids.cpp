@@ -94,8 +94,8 @@ const Cut *CutSolids::of_particles()
   return any ? &cut : nullptr;
 }
 
-// of a step with sub-steps: the types that are light
-std::vector<char> LightSolids::types() const
+// of a step with sub-steps: the types that are light in fluid of this level
+std::vector<char> LightSolids::types(size_t level) const
 {
   const auto &state = disc.state;
   const auto layer = [&](int t) {
@@ -103,7 +103,7 @@ std::vector<char> LightSolids::types() const
   };
   double fluid = 0.0;
   for (int t = 1; t <= atom->ntypes; t++)
-    if (state[t].species == FLUID) fluid = std::max(fluid, layer(t));
+    if (state[t].species == FLUID && disc.level_of[t] == level) fluid = std::max(fluid, layer(t));
   std::vector<char> light(atom->ntypes + 1, 0);
   for (int t = 1; t <= atom->ntypes; t++)
     light[t] = state[t].species == SOLID && layer(t) < 0.5 * fluid;
@@ -113,8 +113,11 @@ std::vector<char> LightSolids::types() const
 bool LightSolids::any() const
 {
   if (step.substeps <= 1) return false;
-  const auto light = types();
-  return std::find(light.begin(), light.end(), 1) != light.end();
+  for (size_t level = 0; level < disc.levels.size(); level++) {
+    const auto light = types(level);
+    if (std::find(light.begin(), light.end(), 1) != light.end()) return true;
+  }
+  return false;
 }
 
 // use(i, j, x_ij, seen, k, eta, reflection) for pairs of a fluid and a solid, whose change of
@@ -126,13 +129,15 @@ void LightSolids::for_wet_pairs(PairSets &sets, const FluidParticles &particles,
 {
   static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
   const int *const type = atom->type;
-  const std::vector<char> light = types();
-  const auto visit = [&](const FluidPairs &pairs, double dx, const Walls::Reflection *reflection,
-                         const ChosenKernel &kernel, auto dim) {
+  const auto visit = [&](const PairSet &set, const FluidPairs &pairs,
+                         const Walls::Reflection *reflection, auto dim) {
     constexpr int D = dim();
+    const ChosenKernel kernel(disc.kernel, D, set.h);
     const FluidParticles &in = pairs.in;
     const Mirror mirror = pairs.mirror ? *pairs.mirror : Mirror();
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    const std::vector<char> light = types(set.level);
+    const double dx = disc.levels[set.level].dx;
     for (const Row &row : pairs.rows) {
       if (row.n == 0) continue;
       const int i = row.i, t = type[row.j[0]];
@@ -157,11 +162,9 @@ void LightSolids::for_wet_pairs(PairSets &sets, const FluidParticles &particles,
   };
   sets.for_all(step.walls, particles, [&](const PairSet &set, const FluidPairs &pairs, int k) {
     if (set.what != PairSet::SOLIDS) return;
-    const ChosenKernel kernel(disc.kernel, disc.dim, set.h);
     const auto *const reflection = pairs.mirror ? &step.walls.reflections[k] : nullptr;
-    const double dx = disc.levels[set.level].dx;
-    disc.dim == 2 ? visit(pairs, dx, reflection, kernel, std::integral_constant<int, 2>())
-                  : visit(pairs, dx, reflection, kernel, std::integral_constant<int, 3>());
+    disc.dim == 2 ? visit(set, pairs, reflection, std::integral_constant<int, 2>())
+                  : visit(set, pairs, reflection, std::integral_constant<int, 3>());
   });
 }
 

@@ -76,7 +76,7 @@ namespace FSI {
     Ledger &ledger;
     Ghosts &ghosts;
     const bool viscous;
-    std::vector<char> types() const;
+    std::vector<char> types(size_t level) const;
     template <class Use> void for_wet_pairs(PairSets &, const FluidParticles &, Use) const;
   };
 

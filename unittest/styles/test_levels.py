@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from decks import JUMP, agree_on_ranks, goes_on_bit_for_bit, levels_gate, near
-from scenes import RUBBER, WATER, Kernel, Scene, close, cloud, lammps, lattice, pairs, run, sum_over
+from decks import JUMP, WALL, agree_on_ranks, deck, goes_on_bit_for_bit, levels_gate, near
+from scenes import (RUBBER, WATER, Kernel, Scene, close, cloud, difference, lammps, lattice, pairs,
+                    run, sum_over, watch)
 
 
 def beside(dim, ratio=JUMP, n=6, jitter=0.2, vmax=0.5, dx=0.1):
@@ -406,3 +407,45 @@ def test_hydrostatic_load(kind):
     found = np.mean(load) / (0.5 * 1000 * 9.81 * H**2)
     print(f"load on a {kind} beside fine and coarse water: {found:.4f} of the hydrostatic one")
     assert abs(found - 1) < 0.02
+
+
+BESIDE = {  # what water of the same spacing flows to, how fast, and a line
+    "mirror walls": (WALL, -2.0, "fix wp body fsi/wall/particle"),
+    "linear pressure": (WALL, 0.1, "fix wp body fsi/wall/particle pressure linear"),
+    "no light body": (RUBBER, 0.1, ""),
+    "lines": (WALL, 0.1, "fix wp body fsi/wall/particle\n"
+              "compute top water fsi/probe level line 0.29 0.02 0 0.29 0.3 0\n"
+              "fix top all ave/time 60 1 60 c_top file top.txt"),
+}
+
+
+@pytest.mark.parametrize("case", BESIDE)
+def test_fluid_finer_than_dx(tmp_path, case):
+    """Water of one spacing that flows against mirror walls, which reflect some of it, or a body. With a dx four times as large, of a type without particles, it is the same to round-off:
+    nothing counts in spacings of a fluid that is not there."""
+    dx, (body, speed, line), last = 0.02, BESIDE[case], []
+    solid = body == RUBBER
+    for coarse in (dx, 4 * dx):
+        fix = f"fix sph {'all' if solid else 'water'} fsi "
+        text = deck("-0.1 0.6 -0.1 0.6", dx, {"water": WATER, "body": body, "far": WATER},
+                    "fix g all gravity 9.81 vector 0 -1 0",
+                    "fix w all fsi/wall/mirror xlo 0 ylo 0", line,
+                    f"velocity water set {speed} {speed} 0 units box",
+                    group=fix.split()[2], water="0 0.3 0 0.2", body="0.3 0.36 0 0.3", dt=2e-4,
+                    fluid="sound 10 artificial/visc 0.05 0.1 density/diffusion 0.1",
+                    sph=f"{'spacing 1*2 0.02' * (coarse > dx)} {'substeps 4' * solid}")
+        assert fix + "0.02 " in text
+        result = run(tmp_path / f"{coarse}", text.replace(fix + "0.02 ", f"{fix}{coarse} ")
+                     + watch(every=60) + "run 60\nprint '$(f_w) reflected'\n")
+        last.append(result)
+    frames = [result.frames()[-1] for result in last]
+    for quantity in ("x", "v", "rho"):
+        assert difference(*frames, quantity) < 1e-10, quantity
+    said = [re.findall(r"WARNING.*|.* acts like .*", result.output) for result in last]
+    assert said[0] == said[1] and len(said[0]) > 1
+    reflected = int(re.search(r"^(\d+) reflected", last[0].output, re.M)[1])
+    assert (reflected > 0) == (speed < 0)
+    if case == "lines":    # linear between points dx/4 apart: 0.02 dx
+        top = [np.loadtxt(result.folder / "top.txt")[0, 1] for result in last]
+        print(top)
+        assert abs(top[0] - top[1]) < 0.02 * dx

@@ -415,9 +415,10 @@ def test_balance_where_pairs_merge_across_the_edge(settle):
 
 
 @pytest.mark.parametrize("guard", ["auto", "0"])
-def test_energy_of_splitting_beside_a_wall(guard):
-    """Halves are not within the guard of a wall of particles, which would push them with energy out
-    of nothing: 18 J of 13 J that this water exchanges."""
+@pytest.mark.parametrize("zone", ["comes", "goes"])
+def test_energy_beside_a_wall(guard, zone):
+    """Halves, and what two become, are not within the guard of a wall of particles, which would
+    push them with energy out of nothing: 18 and 30 J of 13 J that this water exchanges."""
     fine = 1.2 / 34
     water, bed = lattice((24, 16), DX), lattice((34, 4), fine, origin=np.array([0, -4 * fine]))
     x, type_ = np.concatenate([water, bed]), np.repeat([1, 3], [len(water), len(bed)])
@@ -428,13 +429,13 @@ def test_energy_of_splitting_beside_a_wall(guard):
                commands=(f"fix w held fsi/wall/particle guard {guard}",
                          "fix g moving gravity 9.81 vector 0 -1 0",
                          "fsi/set moving hydrostatic 0.8",
-                         "variable down equal -0.9*(step>50)",
+                         f"variable down equal -0.9*(step{'>' if zone == 'comes' else '<='}50)",
                          "region z block INF INF 0.9 1.3 INF INF units box move NULL v_down NULL",
                          "fix ref moving fsi/refine 5 types 1 2 region z",
                          "compute e all fsi/energy")) as s:
         before = energy(go(s, 50))
         after = [energy(go(s, 20)) for _ in range(3)]
-        assert outputs(s)[SPLITS] > 150
+        assert outputs(s)[SPLITS if zone == "comes" else MERGES] > 150
         print(guard, np.array(after) - before)
         assert np.abs(np.array(after) - before).max() < 0.05 * 13
 
@@ -512,6 +513,28 @@ def test_walls_and_edges():
         y = s.get("x")
         assert (s.n == 2 * len(x) and y[:, :2].min() > 0.07 * DX and y[:, 1].max() < 1.2 - 0.07 * DX
                 and y[:, 0].max() < 1.2)
+
+
+@pytest.mark.parametrize("sides", ["xlo", "xlo xhi"])
+def test_fluid_behind_a_segment_splits(sides):
+    """Of a mirror wall, on its own or with one for that side: all halves are on their side, and not
+    much nearer to it than the shaken lattice was."""
+    x, v = cloud((24, 24), DX, jitter=0.3)
+    walls = " ".join(f"{side} 0.6 range y 0.2 1.0" for side in sides.split())
+    with box_scene(x, zone="block INF INF INF INF INF INF",
+                   commands=(f"fix walls all fsi/wall/mirror {walls}",), boundary="f f p",
+                   refine="region zone settle 0") as s:
+        beside = lambda y: (np.abs(y[:, 0] - 0.6) < 0.2) & (np.abs(y[:, 1] - 0.6) < 0.35)
+        side = lambda: dict(zip(s.get("id"), s.get("x")[:, 0] > 0.6))
+        before = side()
+        go(s, 0)
+        y, after = s.get("x"), side()
+        seen = np.abs(y[beside(y), 0] - 0.6)
+        # behind one that stands alone they are as near as they like
+        assert s.n == 2 * len(x) and (sides == "xlo" or seen.min() > 0.07 * DX)
+        assert all(after[i] == before[i] for i, at in zip(s.get("id"), y)
+                   if i in before and abs(at[1] - 0.6) < 0.35)
+        assert abs((y[beside(y), 0] > 0.6).mean() - (x[beside(x), 0] > 0.6).mean()) < 0.03
 
 
 PHYSICS = """pair_style fsi/fluid sound 30 tension yes density/diffusion 0.1 artificial/visc 0.02 0
@@ -774,23 +797,26 @@ def test_types_spacings_and_distances_follow(tmp_path, ranks):
                                                                          last["rest"])
 
 
-@pytest.mark.parametrize("dim, zone", [(2, "two blocks"), (2, "moving"), (3, "sphere")])
+@pytest.mark.parametrize("dim, zone",
+                         [(2, "two blocks"), (2, "moving"), (2, "corner"), (3, "sphere")])
 def test_zones_around_a_region(dim, zone):
     """Before the first step each particle is of the level of its distance from the region, by the
     kernel's support of the coarser level and a spacing from one level to the next; and what leaves
-    merges again."""
+    merges again. A disc in the box' corner goes on in the others, which are its images."""
     n, levels = ((40, 40), 3) if dim == 2 else ((22, 22, 22), 2)
     x, size = lattice(n, DX), [k * DX for k in n] + [0] * (3 - dim)
     spacing = DX * 2.0**(-np.arange(levels + 1) / dim)
     wider = np.append(np.cumsum((3 * spacing[:-2] + spacing[1:-1])[::-1])[::-1], 0.0)
     blocks = {"two blocks": [((0.9, 0.95), (1.0, 1.1)), ((1.0, 1.0), (1.2, 1.05))],
-              "moving": [((0.95, 0.95), (1.05, 1.1))], "sphere": []}[zone]
+              "moving": [((0.95, 0.95), (1.05, 1.1))]}.get(zone, [])
     regions = {"two blocks": ["region one block 0.9 1.0 0.95 1.1 INF INF units box",
                               "region two block 1.0 1.2 1.0 1.05 INF INF units box",
                               "region zone union 2 one two"],
                "moving": ["variable place equal 0.5*(step<5)", "region zone block 0.45 0.55 0.95 "
                           "1.1 INF INF units box move v_place NULL NULL"],
+               "corner": ["region zone cylinder z 0 0 0.08 INF INF units box"],
                "sphere": ["region zone sphere 0.55 0.55 0.55 0.08 units box"]}[zone]
+    middle = 0.55 if zone == "sphere" else 0.0
     with Scene(x, dim=dim, dx=DX, box=([0, 0, 0], size), boundary="p p p",
                materials=(WATER,) * (levels + 1), fluid="sound 15 tension yes", dt=1e-6,
                commands=("pair_coeff * * NULL m0 levels", *regions, "fix ref all fsi/refine 10 "
@@ -799,7 +825,8 @@ def test_zones_around_a_region(dim, zone):
         at = s.get("x")[:, :dim]
         outside = [np.linalg.norm(
             np.maximum(0, np.maximum(np.subtract(low, at), np.subtract(at, high))),
-            axis=1) for low, high in blocks] or [np.linalg.norm(at - 0.55, axis=1) - 0.08]
+            axis=1) for low, high in blocks] or [
+                np.linalg.norm((at - middle + size[0] / 2) % size[0] - size[0] / 2, axis=1) - 0.08]
         # as far halves go from where the old one was
         r, half = np.min(outside, axis=0), 0.25 * dim**0.5 * spacing[0]
         level = s.get("type") - 1
@@ -819,6 +846,26 @@ def test_given_again_between_runs(tmp_path):
     parts = run(tmp_path / "parts", layers(2).replace("f_ref[*]", "") + watch(every=90)
                 + f"run 45\n{again}run 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
     assert not differing(whole, parts)
+
+
+def test_given_again_with_fewer_levels():
+    """Water that flows through a zone of two levels, then of one: what is of the second merges,
+    there and elsewhere, but for a few that wait for a partner."""
+    with Scene(lattice((24, 24), DX), lattice((24, 24), 0) + [3.0, 0, 0], dx=DX,
+               box=([0, 0, 0], [1.2, 1.2, 0]), boundary="p p p", materials=(WATER,) * 3,
+               fluid="sound 15 tension yes density/diffusion 0.1 background 2000", dt=1e-3,
+               commands=("pair_coeff * * NULL m0 levels",
+                         "region zone block 0.4 0.8 0.4 0.8 INF INF units box",
+                         "fix ref all fsi/refine 10 region zone finest 0.025")) as s:
+        go(s, 40)
+        before, mass = (s.get("type") == 3).sum(), exact_mass(s)
+        s.run_lines("unfix ref",
+                    f"fix ref all fsi/refine 10 region zone finest {DX * FINER[2]!r}")
+        go(s, 100)
+        after = (s.get("type") == 3).sum()
+        print(before, after)
+        assert before > 250 and after < 0.1 * before and exact_mass(s) == mass
+        assert (s.get("type") == 2).sum() > 100
 
 
 BAD = {
