@@ -24,6 +24,7 @@
 #include "fsi_profile.h"
 #include "fsi_refusals.h"
 #include "fsi_rows.h"
+#include "fsi_sight.h"
 #include "memory.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -174,7 +175,8 @@ void PairFSIGrain::find_grains()
   given.assign(grains.size() * dim, 0.0);
 }
 
-// over the pairs of the neighbor list, in which either may be the grain
+// Over the pairs of the neighbor list, in which either may be the grain, as far as no thin body or
+// segment of a mirror wall is between them
 template <class K> void PairFSIGrain::sum_up(const K &kernel)
 {
   constexpr int D = K::DIM;
@@ -182,15 +184,20 @@ template <class K> void PairFSIGrain::sum_up(const K &kernel)
   const auto *const v = vectors(atom->v);
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const type = atom->type;
+  Sight *const sight = disc->sight.get();
   touches.clear();
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     const bool grain_first = number[i] >= 0;
     const double per_h = grain_first ? kernel.hinv : -kernel.hinv;    // from the grain to the fluid
     const Row row = {i, list->numneigh[i], list->firstneigh[i]};
+    const bool looks = sight && row.n > 0 && sight->near(atom->x[i]);
+    if (looks) sight->look_from(atom->x[i], kernel.cut);
     for_near(row, atom->x, D, kernel.cutsq, [&](int j, const double *d, double rsq) {
       const int g = grain_first ? i : j, f = grain_first ? j : i;
-      const double w = rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)),
+      const double part = looks ? sight->visible(atom->x[j], kernel.cut) : 1.0;
+      if (part == 0.0) return;
+      const double w = part * rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)),
                    p = w * pressure_of(f, atom, *disc, *step);
       touches.push_back({f, g, w});
       double *const sum = &sums[(size_t) number[g] * Of::N];

