@@ -407,14 +407,13 @@ void FixFSIWallParticle::undo_advance()
     std::copy_n(&old[4 * m], 4, before[members[m]]);
 }
 
-// force of the fluid: only pairs have added to f so far
-void FixFSIWallParticle::pre_reverse(int, int)
+void FixFSIWallParticle::tally_fluids(double sign)
 {
   const int n = atom->nlocal + (force->newton_pair ? atom->nghost : 0);
-  std::fill_n(force_on, 3, 0.0);
+  if (sign < 0.0) std::fill_n(force_on, 3, 0.0);
   for (const int i : members)
     if (i < n)
-      for (int d = 0; d < 3; d++) force_on[d] += atom->f[i][d];
+      for (int d = 0; d < 3; d++) force_on[d] += sign * atom->f[i][d];
 }
 
 double FixFSIWallParticle::compute_vector(int n)

@@ -38,10 +38,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIWallParticle(class LAMMPS *, int, char **);
   ~FixFSIWallParticle() override;
-  int setmask() override { return FixConst::PRE_REVERSE | FixConst::POST_RUN; }
+  int setmask() override { return FixConst::POST_RUN; }
   void init() override;
-  void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
-  void pre_reverse(int, int) override;
   void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -53,6 +51,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   void set_fields(FSI::Discretization &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at
                                             // which forces are computed
+  void tally_fluids(double sign) override;
   void undo_advance() override;
 
  private:

@@ -274,6 +274,39 @@ run 0
     assert np.abs(f[:, 0]).max() < (0.02 if wall else 1e-5) * displaced
 
 
+def test_contact_is_no_force_of_the_fluid(tmp_path):
+    """A grain that a wall of particles bears: the force of the fluid on the wall, which fix
+    fsi/wall/particle has, is what pair_style fsi/fluid adds to it, compute fsi/force. The grain's
+    contact was in it."""
+    text = start("comm_modify vel yes", style="hybrid fsi sphere") + atoms(
+        "-0.05 0.25 -0.05 0.2", DX, types=3, water="0 0.2 0 0.1", wall="-0.04 0.24 -0.04 0") + f"""
+create_atoms 3 single 0.105 0.001 0 units box
+set type 2 diameter {DX}
+set type 3 diameter {0.4 * DX}
+set type 3 density/disc 2500
+group grains type 3
+group moves type 1 3
+fsi/material water fluid rho 1000
+fsi/material wall wall rho 1000
+pair_style hybrid/overlay granular fsi/fluid sound {C} fsi/grain
+pair_coeff * * fsi/fluid NULL water wall NULL
+pair_coeff 1 3 fsi/grain
+pair_coeff 2*3 3 granular hooke 5e3 0.5 tangential linear_history 2e3 0.5 0.5 damping velocity
+fix sph moves fsi {DX} wendland {H}
+fix mirror water fsi/wall/mirror xlo 0 xhi 0.2
+fix walls wall fsi/wall/particle
+velocity grains set 0 -0.5 0 units box
+compute force wall fsi/force
+timestep 1e-5
+run 20
+print "FORCES $(f_walls[2]:%.17g) $(c_force[2]:%.17g) $(vcm(grains,y))"
+"""
+    done = run(tmp_path, text).output
+    fix, compute, speed = map(float, re.search(r"^FORCES (.*)$", done, re.M)[1].split())
+    assert speed > -0.48    # it was pushed
+    assert fix == pytest.approx(compute, rel=1e-12)
+
+
 @pytest.mark.parametrize("dim, d, eta", ((3, 2e-4, 0.001), (3, 2e-4, 1e-7), (2, 5e-4, 0.001)))
 def test_terminal_velocity(tmp_path, dim, d, eta):
     """A sphere of density 2500 sinks in held water at the speed where Schiller and Naumann's drag
