@@ -61,9 +61,12 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   double fluid_density = 0.0;    // at rest
   bool mixed = false;            // several fluids differ in it: each wall particle has a mean
   std::vector<class FixFSIMove *> movers;
-  double **before = nullptr;    // velocity at the last step, and whether there was one
-  std::vector<double> old;      // the same of members at the start of this one
-  double **at_end = nullptr;    // velocity at the end of a run
+  // velocity at the last step, of light floats a mean of the last ones, and whether there was one
+  double **before = nullptr;
+  int floats = 0;                   // groups of rigid bodies
+  std::vector<double> of_newest;    // by type: part of the newest velocity in that of its floats
+  std::vector<double> old;          // the same of members at the start of this one
+  double **at_end = nullptr;        // velocity at the end of a run
   void follow_commands();
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
@@ -84,6 +87,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   std::vector<int> first, near;    // of each local member, where its neighbors in the wall begin;
                                    // these
   void find_near();
+  void find_floats();
+  double newest(int i) const;
   void find_acceleration(int i, double *a) const;
   void add_turn(int m, const double *way, double *v) const;
   double force_on[3] = {};    // this group, this rank's part
