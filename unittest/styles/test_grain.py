@@ -307,6 +307,24 @@ print "FORCES $(f_walls[2]:%.17g) $(c_force[2]:%.17g) $(vcm(grains,y))"
     assert fix == pytest.approx(compute, rel=1e-12)
 
 
+@pytest.mark.parametrize("mover", ("", "fix n grains nve/sphere"))
+def test_grains_that_no_fix_moves(tmp_path, mover):
+    """Fix pour and deposit give grains their own group and all: those hung where they were made."""
+    text = deck(2, atoms="create_atoms 1 single 0.1 0.1 0", moved="water", pairs="pair_coeff 2 2 "
+                "none") + f"""
+region r block 0.12 0.16 0.12 0.16 -0.001 0.001
+fix d grains deposit 1 2 2 4711 region r
+{mover}
+run 3
+"""
+    result = lammps(tmp_path, text, test_fsi=FILE)
+    if mover:
+        assert result.status == 0, result.output
+    else:
+        assert "Atom 2 was made during a run and is not in group water of fix sph" in result.errors[
+            0]
+
+
 @pytest.mark.parametrize("dim, d, eta", ((3, 2e-4, 0.001), (3, 2e-4, 1e-7), (2, 5e-4, 0.001)))
 def test_terminal_velocity(tmp_path, dim, d, eta):
     """A sphere of density 2500 sinks in held water at the speed where Schiller and Naumann's drag
