@@ -17,6 +17,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
@@ -133,6 +134,31 @@ void PairFSIGrain::check_radii(int type) const
 std::vector<Part::Effect> PairFSIGrain::effects() const
 {
   return {{"grains: pressure gradient and drag of Schiller and Naumann", "fsi/grain", true}};
+}
+
+// LAMMPS' contact goes by radii: between points as far apart as those of a wall grains fall through
+void PairFSIGrain::find_idle(const Census &, const Idle &nothing) const
+{
+  const auto meets_grains = [this](const Pair *contact, int t) {
+    for (int g = 1; g <= atom->ntypes; g++)
+      if (disc->state[g].species == NONE && contact->setflag[std::min(g, t)][std::max(g, t)])
+        return true;
+    return false;
+  };
+  const Pair *contact, *last = nullptr;
+  for (int k = 1; (contact = force->pair_match("^gran", 0, k)) != last; k++) {
+    last = contact;    // the only one has all numbers
+    for (int t = 1; t <= atom->ntypes && contact; t++) {
+      if (!disc->state[t].is_body() || !meets_grains(contact, t)) continue;
+      const auto points = find_particles(atom, world, [=](int i) {
+        return atom->type[i] == t && atom->radius[i] == 0.0;
+      });
+      if (points.count)
+        nothing(fmt::format("Contact of grains with atom type {}", t),
+                fmt::format("{} of its particles have no diameter: set type {} diameter",
+                            points.count, t));
+    }
+  }
 }
 
 void PairFSIGrain::compute(int eflag, int vflag)

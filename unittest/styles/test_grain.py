@@ -307,6 +307,24 @@ print "FORCES $(f_walls[2]:%.17g) $(c_force[2]:%.17g) $(vcm(grains,y))"
     assert fix == pytest.approx(compute, rel=1e-12)
 
 
+@pytest.mark.parametrize("diameter", ("", f"set type 2 diameter {DX}"))
+def test_walls_of_points_bear_no_grain(tmp_path, diameter):
+    """Without a diameter the particles of a wall are points to LAMMPS' contact, and grains smaller
+    than the spacing fall between them: a warning says so."""
+    contact = "hooke 5e3 0.5 tangential linear_nohistory 0 0 damping velocity"
+    text = deck(2, atoms="create_atoms 1 single 0.1 0.1 0\ncreate_atoms 2 single 0.105 0.05 0",
+                pairs=f"pair_coeff 2 3 granular {contact}\npair_coeff 3 3 none",
+                styles="fsi/grain granular")
+    text = text.replace("create_box 2", "create_box 3").replace(
+        "water NULL", "water wall NULL").replace("1 2 fsi/grain", "1 3 fsi/grain").replace(
+            "group grains type 2", "group wall type 2").replace("fix sph all", "fix sph water")
+    text += f"fix walls wall fsi/wall/particle\n{diameter}\nrun 0\n"
+    done = run(tmp_path, text, test_fsi=FILE + "wall wall rho 1000\n")
+    warning = ("Contact of grains with atom type 2 has nothing to act on: 1 of its particles have "
+               "no diameter: set type 2 diameter")
+    assert (warning in done.output) == (not diameter)
+
+
 @pytest.mark.parametrize("mover", ("", "fix n grains nve/sphere"))
 def test_grains_that_no_fix_moves(tmp_path, mover):
     """Fix pour and deposit give grains their own group and all: those hung where they were made."""
