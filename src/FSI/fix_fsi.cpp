@@ -399,9 +399,9 @@ void FixFSI::set_arrays(int i)
   fields.begin(i);
   changes.made(i);
   if (!parts.empty()) give_defaults(i, atom, disc);    // not before the first run
-  if (update->whichflag == 1 && disc.state[atom->type[i]].species == FLUID && !is_moved(i, lmp))
+  if (update->whichflag == 1 && !disc.state[atom->type[i]].is_body() && !is_moved(i, lmp))
     error->one(FLERR,
-               "Fluid atom {} was made during a run and is not in group {} of fix {}: no fix "
+               "Atom {} was made during a run and is not in group {} of fix {}: no fix "
                "integrates it. Give the fix that makes it that group",
                atom->tag[i], group->names[igroup], id);
 }

@@ -96,8 +96,9 @@ void FixFSIWallParticle::init()
   for (const State &s : disc->state) {
     if (s.species != FLUID) continue;
     densities = densities || (fluid_density > 0.0 && s.rho0 != fluid_density);
-    fluid_density = s.rho0;
+    fluid_density = std::max(fluid_density, s.rho0);
   }
+  find_floats();
   const bool stiffness = disc->several_stiffnesses();
   const int dim = disc->dim;
   first_moment = 2 + dim * (slip ? 1 : 2);
@@ -341,6 +342,24 @@ void FixFSIWallParticle::sum_up()
   if (force->newton_pair) swaps->reverse<Fix>(step->profile, this);
 }
 
+// The pressure of a float lags by a step behind its acceleration a, as -M a with M = 0.4 rho dx of
+// an area wet on both sides: with less mass than that a grows from step to step. With a part w of
+// it, and the rest of the mean before, it does not below w = 2/(1 + M/m).
+void FixFSIWallParticle::find_floats()
+{
+  static constexpr double LIGHT = 0.5;    // over the fluid's density
+  floats = 0;
+  for (const auto &fix : modify->get_fix_by_style("^rigid")) floats |= fix->groupbit;
+  of_newest.clear();
+  for (const State &s : disc->state)
+    of_newest.push_back(std::min(1.0, s.rho0 / (LIGHT * fluid_density)));
+}
+
+double FixFSIWallParticle::newest(int i) const
+{
+  return atom->mask[i] & floats ? of_newest[atom->type[i]] : 1.0;
+}
+
 // Acceleration: in this step where the motion is known, else in the last; a wall that is set in
 // motion has none in its first step
 void FixFSIWallParticle::find_acceleration(int i, double *a) const
@@ -354,7 +373,8 @@ void FixFSIWallParticle::find_acceleration(int i, double *a) const
       known = 1.0;
       span = update->dt;
     }
-  for (int k = 0; k < disc->dim; k++) a[k] = known > 0.0 ? (to[k] - from[k]) / span : 0.0;
+  for (int k = 0; k < disc->dim; k++)
+    a[k] = known > 0.0 ? newest(i) * (to[k] - from[k]) / span : 0.0;
 }
 
 // p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
@@ -402,7 +422,11 @@ void FixFSIWallParticle::end_state(bool advance)
       rho[i] = state.density(p);
     if (advance) {
       std::copy_n(before[i], 4, &old[4 * m]);
-      std::copy_n(v[i], 3, before[i]);
+      const double part = newest(i);
+      if (part == 1.0 || before[i][3] == 0.0)
+        std::copy_n(v[i], 3, before[i]);
+      else
+        for (int k = 0; k < 3; k++) before[i][k] += part * (v[i][k] - before[i][k]);
       before[i][3] = 1.0;
     }
   }
@@ -416,14 +440,13 @@ void FixFSIWallParticle::undo_advance()
     std::copy_n(&old[4 * m], 4, before[members[m]]);
 }
 
-// force of the fluid: only pairs have added to f so far
-void FixFSIWallParticle::pre_reverse(int, int)
+void FixFSIWallParticle::tally_fluids(double sign)
 {
   const int n = atom->nlocal + (force->newton_pair ? atom->nghost : 0);
-  std::fill_n(force_on, 3, 0.0);
+  if (sign < 0.0) std::fill_n(force_on, 3, 0.0);
   for (const int i : members)
     if (i < n)
-      for (int d = 0; d < 3; d++) force_on[d] += atom->f[i][d];
+      for (int d = 0; d < 3; d++) force_on[d] += sign * atom->f[i][d];
 }
 
 double FixFSIWallParticle::compute_vector(int n)

@@ -38,10 +38,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIWallParticle(class LAMMPS *, int, char **);
   ~FixFSIWallParticle() override;
-  int setmask() override { return FixConst::PRE_REVERSE | FixConst::POST_RUN; }
+  int setmask() override { return FixConst::POST_RUN; }
   void init() override;
-  void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
-  void pre_reverse(int, int) override;
   void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -53,6 +51,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   void set_fields(FSI::Discretization &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at
                                             // which forces are computed
+  void tally_fluids(double sign) override;
   void undo_advance() override;
 
  private:
@@ -63,9 +62,12 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   bool mixed = false;            // several fluids differ in it: each wall particle has a mean
   bool several = false;          // spacings of fluids: likewise
   std::vector<class FixFSIMove *> movers;
-  double **before = nullptr;    // velocity at the last step, and whether there was one
-  std::vector<double> old;      // the same of members at the start of this one
-  double **at_end = nullptr;    // velocity at the end of a run
+  // velocity at the last step, of light floats a mean of the last ones, and whether there was one
+  double **before = nullptr;
+  int floats = 0;                   // groups of rigid bodies
+  std::vector<double> of_newest;    // by type: part of the newest velocity in that of its floats
+  std::vector<double> old;          // the same of members at the start of this one
+  double **at_end = nullptr;        // velocity at the end of a run
   void follow_commands();
   const FSI::Discretization *disc = nullptr;
   FSI::StepState *step = nullptr;
@@ -87,6 +89,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   std::vector<int> first, near;    // of each local member, where its neighbors in the wall begin;
                                    // these
   void find_near();
+  void find_floats();
+  double newest(int i) const;
   void find_acceleration(int i, double *a) const;
   void add_turn(int m, const double *way, double *v) const;
   double force_on[3] = {};    // this group, this rank's part

@@ -104,6 +104,8 @@ class Part {
   // sum_j grad_i W_ij/psi_bulk of fluids, components one after the other
   virtual void add_gradient_sum(double *s) {}
   virtual void end_state(bool advance) {}    // when ghosts have it
+  // of walls: adds the forces in atom->f with this sign, -1 before those of fluids and +1 after
+  virtual void tally_fluids(double sign) {}
   // when all forces are there: those that bring velocities to what is given
   virtual void prescribe() {}
   virtual void integrate_substeps() {}    // what takes shorter steps than the kick of all

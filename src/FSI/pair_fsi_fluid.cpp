@@ -260,6 +260,9 @@ void PairFSIFluid::init_style()
   PairFSI::init_style();
   list = lists;
   force_computes = computes_of<ComputeFSIForce>(lmp);
+  walls_of_particles.clear();
+  for (auto *p : fixes_of<Part>(lmp))
+    if (p->facts().particle_walls) walls_of_particles.push_back(p);
   const Facts of_solids = facts_of_solids(lmp);
   couple = disc->article && of_solids.style == Facts::OF_SOLIDS ? FULL : given_couple;
   check_effects(of_solids);
@@ -784,9 +787,13 @@ void PairFSIFluid::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   check_tally();
 
-  for (auto *measure : force_computes) measure->tally(-1.0);
+  const auto measure = [this](double sign) {
+    for (auto *compute : force_computes) compute->tally(sign);
+    for (auto *walls : walls_of_particles) walls->tally_fluids(sign);
+  };
+  measure(-1.0);
   disc->dim == 2 ? compute_forces<2>() : compute_forces<3>();
-  for (auto *measure : force_computes) measure->tally(1.0);
+  measure(1.0);
 
   if (vflag_fdotr && !step->walls.any()) virial_fdotr_compute();
 }

@@ -119,6 +119,7 @@ class PairFSIFluid : public PairFSI {
   int surfaces;                      // does the density follow surfaces (fsi_number_density.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
+  std::vector<FSI::Part *> walls_of_particles;
 
   bool by_preset(const char *keyword) const;    // has the preset set it?
   void check_effects(const FSI::Facts &of_solids) const;

