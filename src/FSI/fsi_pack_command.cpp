@@ -672,8 +672,10 @@ class Packing : protected Pointers {
       } else if (atom->mask[i] & body && !inside[i])
         atom->mask[i] ^= body | filler;
     renew_ghosts(lmp);
+    // also other bodies, with which what moves would see two where one is
     const Cells staying(atom, disc->dim, disc->dx, [this](int i) {
-      return (atom->mask[i] & (fluid | still)) != 0;
+      return disc->state[atom->type[i]].species != NONE &&
+          !(atom->mask[i] & (body | filler | gone_at_once));
     });
     const double reach = band + disc->largest_cut;    // what moves sees no end of it
     double outward[3];

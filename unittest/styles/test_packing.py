@@ -257,6 +257,26 @@ def test_wall_in_a_box_of_no_whole_spacings(tmp_path, side, ranks):
     assert (wall & (r < 0.2 + 3 * DX)).sum() == pytest.approx(math.pi * (23**2 - 20**2), abs=12)
 
 
+def test_disc_in_a_vessel(tmp_path):
+    """Packed one after the other, 7.5 spacings apart. The lattice of the second, which is in the
+    whole box until it is packed, does not press on the water beside the first."""
+    vessel = """create_atoms 3 box
+group vessel type 3
+fix 3 vessel fsi/wall/particle
+region v cylinder z 0 0 0.13 INF INF units box side out
+fsi/pack vessel water region v
+write_dump"""
+    text = deck("region s", region=DISC).replace("create_box 2", "create_box 3").replace(
+        "water body\n", "water body body\n").replace("write_dump", vessel)
+    lammps(tmp_path, text)
+    kind, mass, x = state(tmp_path)
+    r = np.hypot(x[:, 0], x[:, 1])
+    of = sums(x, mass / np.array([0, 1000, 1500, 1500])[kind], 0.3, 1.5 * DX, 2)
+    # as in test_disc; 0.1 with two lattices in the disc
+    assert math.sqrt((of[(kind < 3) & (abs(r - R) < 3 * DX)]**2).mean()) < 0.02
+    assert r[kind == 1].min() > R and r[kind == 1].max() < 0.13 - 0.499 * DX
+
+
 def test_volume_of_several_regions(tmp_path):
     """A disc with a strip: LAMMPS has no distance from the two corners between them."""
     width = 0.03
