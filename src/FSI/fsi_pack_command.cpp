@@ -552,6 +552,27 @@ class Packing : protected Pointers {
     return sum;
   }
 
+  // A lattice in the whole box seldom has whole spacings in it: there the body ends with its cells
+  void end_with_cells(double *lo, double *hi) const
+  {
+    std::vector<double> ends(7, -INFINITY);    // of cells: minus low, high; the widest
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & body)) continue;
+      const double dx = disc->dx_of(atom->type[i]);
+      for (int d = 0; d < 3; d++) {
+        ends[d] = std::max(ends[d], 0.5 * dx - atom->x[i][d]);
+        ends[3 + d] = std::max(ends[3 + d], 0.5 * dx + atom->x[i][d]);
+      }
+      ends[6] = std::max(ends[6], dx);
+    }
+    ends = over_ranks(ends, MPI_MAX, world);
+    for (int d = 0; d < domain->dimension; d++) {
+      if (domain->periodicity[d]) continue;
+      if (std::fabs(lo[d] + ends[d]) < ends[6]) lo[d] = -ends[d];
+      if (std::fabs(hi[d] - ends[3 + d]) < ends[6]) hi[d] = ends[3 + d];
+    }
+  }
+
   // in the box and before planes without end, from cells that each rank has of its own
   double volume_inside() const
   {
@@ -560,6 +581,7 @@ class Packing : protected Pointers {
     double lo[3], hi[3], sides[3] = {}, x[3], sum = 0.0;
     std::copy_n(domain->boxlo, 3, lo);
     std::copy_n(domain->boxhi, 3, hi);
+    end_with_cells(lo, hi);
     for (const auto &w : step->walls.wall) {
       if (w.finite) continue;
       double &end = w.side > 0.0 ? lo[w.axis] : hi[w.axis];
@@ -650,8 +672,10 @@ class Packing : protected Pointers {
       } else if (atom->mask[i] & body && !inside[i])
         atom->mask[i] ^= body | filler;
     renew_ghosts(lmp);
+    // also other bodies, with which what moves would see two where one is
     const Cells staying(atom, disc->dim, disc->dx, [this](int i) {
-      return (atom->mask[i] & (fluid | still)) != 0;
+      return disc->state[atom->type[i]].species != NONE &&
+          !(atom->mask[i] & (body | filler | gone_at_once));
     });
     const double reach = band + disc->largest_cut;    // what moves sees no end of it
     double outward[3];

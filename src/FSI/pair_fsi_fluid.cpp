@@ -18,6 +18,7 @@
 #include "compute_fsi_force.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_move.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_fields.h"
@@ -535,7 +536,12 @@ template <int D> void PairFSIFluid::correct_powers()
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
   const double dt = update->dt, half = 0.5 * dt * force->ftm2v;
   const auto *const point = reinterpret_cast<const Point<D> *>(points.data());
+  const auto movers = fixes_of<FixFSIMove>(lmp);    // move walls after this
+  double next[3];
   const auto change = [&](int i, int d) {
+    for (const auto *mover : movers)
+      if ((atom->mask[i] & mover->groupbit) && mover->velocity_at_end(i, next))
+        return 0.5 * (next[d] - atom->v[i][d]);
     const bool waits = disc->state[type[i]].species == FLUID || step->substeps == 1;
     if (waits && (atom->mask[i] & disc->mover->groupbit))
       return half * atom->f[i][d] / atom->rmass[i];

@@ -236,6 +236,47 @@ def test_vessel(tmp_path):
     assert np.sqrt(np.mean((p - 9810 * (top - y))**2)) < 0.02 * 9810 * 0.2
 
 
+@pytest.mark.parametrize("side, ranks", [(0.25, 1), (0.246, 1), (0.254, 2)])
+def test_wall_in_a_box_of_no_whole_spacings(tmp_path, side, ranks):
+    """The cells of its lattice, 50 by 50, go beyond the box or end before it: as many particles as
+    they have room for outside the vessel."""
+    done = lammps(tmp_path, deck_of(
+        f"-{side} {side} -{side} {side}", DX, {"water": WATER, "wall": WALL},
+        "fix wall wall fsi/wall/particle",
+        "region vessel cylinder z 0 0 0.2 INF INF side out units box",
+        "fsi/pack wall water region vessel steps 0",
+        "write_dump all custom end.dump id type mass x y z modify sort id format float %.17g",
+        fluid="preset splash 2", group="water", water="", wall=""), ranks)
+    assert done.status == 0, done.errors
+    kind, mass, x = state(tmp_path)
+    wall, r = kind == 2, np.hypot(x[:, 0], x[:, 1])
+    assert wall.sum() == round(0.25 / DX**2 - math.pi * 20**2)
+    # their density, to the digits of the volume
+    assert mass[wall].sum() == pytest.approx(1000 * (0.25 - math.pi * 0.2**2), rel=5e-4)
+    # next to the water, where the lattice is cut: the error of a count of cells in a ring
+    assert (wall & (r < 0.2 + 3 * DX)).sum() == pytest.approx(math.pi * (23**2 - 20**2), abs=12)
+
+
+def test_disc_in_a_vessel(tmp_path):
+    """Packed one after the other, 7.5 spacings apart. The lattice of the second, which is in the
+    whole box until it is packed, does not press on the water beside the first."""
+    vessel = """create_atoms 3 box
+group vessel type 3
+fix 3 vessel fsi/wall/particle
+region v cylinder z 0 0 0.13 INF INF units box side out
+fsi/pack vessel water region v
+write_dump"""
+    text = deck("region s", region=DISC).replace("create_box 2", "create_box 3").replace(
+        "water body\n", "water body body\n").replace("write_dump", vessel)
+    lammps(tmp_path, text)
+    kind, mass, x = state(tmp_path)
+    r = np.hypot(x[:, 0], x[:, 1])
+    of = sums(x, mass / np.array([0, 1000, 1500, 1500])[kind], 0.3, 1.5 * DX, 2)
+    # as in test_disc; 0.1 with two lattices in the disc
+    assert math.sqrt((of[(kind < 3) & (abs(r - R) < 3 * DX)]**2).mean()) < 0.02
+    assert r[kind == 1].min() > R and r[kind == 1].max() < 0.13 - 0.499 * DX
+
+
 def test_volume_of_several_regions(tmp_path):
     """A disc with a strip: LAMMPS has no distance from the two corners between them."""
     width = 0.03
