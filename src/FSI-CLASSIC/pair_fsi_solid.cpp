@@ -147,6 +147,7 @@ int PairFSISolid::ngrad() const
 
 void PairFSISolid::set_fields(Discretization &)
 {
+  check_pairs();
   fields.set("velocity gradient", Fields::STEP, true, grad, fours(ngrad()));
 }
 
