@@ -154,6 +154,7 @@ int PairFSISolid::ngrad() const
 
 void PairFSISolid::set_fields(Discretization &)
 {
+  check_pairs();
   fields.set("velocity gradient", Fields::STEP, true, grad, fours(ngrad()));
 }
 

@@ -428,7 +428,8 @@ void ComputeFSIProbe::sum_up()
       s.compute->invoked_flag |= INVOKED_PERATOM;
     }
   }
-  if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
+  // who is in a dynamic group is another thing at any step
+  if (listed != neighbor->lastcall || update->whichflag == 0 || group->dynamic[igroup]) find_near();
 
   const int npoints = points.size() / 3;
   sums.assign((size_t) npoints * nsums, 0.0);

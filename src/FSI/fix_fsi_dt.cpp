@@ -179,8 +179,9 @@ void FixFSIDt::approach_end()
       utils::logmesg(lmp, "Fix fsi/dt: time {:.8g} reached on step {}\n", end, now);
     else if (comm->me == 0 && update->nsteps > 0)
       error->warning(FLERR,
-                     "Fix fsi/dt stop {:.8g}: the time is {:.8g} already, there is nothing to run",
-                     end, time);
+                     "Fix fsi/dt stop {:.8g}: the time is {:.8g} already, there is nothing to run. "
+                     "To go on give a later time, or unfix {}",
+                     end, time, id);
     timer->force_timeout();
     cut = true;
     return;

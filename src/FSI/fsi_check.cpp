@@ -325,6 +325,7 @@ void Check::thin_bodies() const
 
 void Check::init()
 {
+  const auto before = limit_sq;
   limit_sq.assign(atom->ntypes + 1, HUGE_SQUARE);
   dense.assign(atom->ntypes + 1, OFF);
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -339,7 +340,8 @@ void Check::init()
   calm_speed = 0.9 * component;
   calm_kick = 0.1 * component;
 
-  warned_dense = warned_soft = false;
+  // once, and again for another sound: run ... every begins many runs
+  if (limit_sq != before) warned_dense = warned_soft = false;
   densest = {};
   deviations.assign(2 * dense.size(), 0.0);
 

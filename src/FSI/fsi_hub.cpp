@@ -27,6 +27,7 @@
 #include "fsi_part.h"
 #include "fsi_preset.h"
 #include "fsi_record.h"
+#include "group.h"
 #include "lammps.h"
 #include "math_const.h"
 #include "math_extra.h"
@@ -371,7 +372,8 @@ void BodyForces::find()
   warned = acts_on_all;
 }
 
-// Of the particles that there are now: levels and buffers may be empty at the start of a run
+// Of the particles that there are now: levels and buffers may be empty at the start of a run, and
+// a dynamic group at any step
 void BodyForces::find_whole_types(const std::vector<State> &state)
 {
   const int ntypes = atom->ntypes, nfields = all.size(), n = acts_on_all.size();
@@ -396,7 +398,10 @@ void BodyForces::find_whole_types(const std::vector<State> &state)
 // styles: it is asked to do so earlier, with nothing to act on.
 void BodyForces::evaluate(const std::vector<State> &state)
 {
-  if (neighbor->ago == 0 && !all.empty()) find_whole_types(state);
+  const bool dynamic = std::any_of(all.begin(), all.end(), [this](const Field &field) {
+    return group->dynamic[field.fix->igroup] != 0;
+  });
+  if ((neighbor->ago == 0 && !all.empty()) || dynamic) find_whole_types(state);
   of_type.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
   size_t on = 0;
   for (auto &field : all) {

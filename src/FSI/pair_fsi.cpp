@@ -23,9 +23,11 @@
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "pair_hybrid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -240,6 +242,27 @@ void PairFSI::check_same_materials() const
                    style, t, a.name, other->style, b.name);
     }
   }
+}
+
+PairHybrid *PairFSI::hybrid_style() const
+{
+  return dynamic_cast<PairHybrid *>(force->pair);
+}
+
+// A hybrid style gives pairs to the last style that pair_coeff names for them
+void PairFSI::check_pairs() const
+{
+  auto *const hybrid = hybrid_style();
+  if (!hybrid) return;
+  const auto has = [&](int a, int b, std::string name) {
+    return hybrid->check_ijtype(a, b, name.data()) != 0;
+  };
+  for (int a = 1; a <= atom->ntypes; a++)
+    for (int b = a; b <= atom->ntypes; b++)
+      if (handles(material[a].species, material[b].species) && material[a].species != NONE &&
+          material[b].species != NONE && !has(a, b, style) && !has(a, b, style + "/omp") &&
+          !has(a, b, style + "/kk"))    // as the script names it
+        refuse(error, Refused::ALL_PAIRS, style, a, b);
 }
 
 void *PairFSI::extract(const char *name, int &dim_of_extract)

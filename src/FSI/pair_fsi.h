@@ -85,6 +85,8 @@ class PairFSI : public Pair, public FSI::Part {
   void check_contact() const;
   void check_same_materials() const;
   void check_species() const;
+  class PairHybrid *hybrid_style() const;    // whose style this is, or null
+  void check_pairs() const;                  // has that left it those of its sums?
   void drop_reference() const;
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
   void set_flags();

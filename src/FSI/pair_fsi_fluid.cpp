@@ -35,7 +35,6 @@
 #include "fsi_sight.h"
 #include "fsi_wet_solids.h"
 #include "neighbor.h"
-#include "pair_hybrid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -334,24 +333,10 @@ int PairFSIFluid::shift_sums() const
   return disc->dim == 2 ? Shift<2>::sums(fills()) : Shift<3>::sums(fills());
 }
 
-// Is this one of several styles of a hybrid one that leaves it all its pairs? Then it takes LAMMPS'
-// list of all pairs: the hybrid style would have its own copied from that.
-bool PairFSIFluid::has_all_pairs() const
-{
-  auto *const all = dynamic_cast<PairHybrid *>(force->pair);
-  if (!all) return false;
-  char name[] = "fsi/fluid", threaded[] = "fsi/fluid/omp";    // as the script names it
-  for (int a = 1; a <= atom->ntypes; a++)
-    for (int b = a; b <= atom->ntypes; b++)
-      if (setflag[a][b] && handles(material[a].species, material[b].species) &&
-          !all->check_ijtype(a, b, name) && !all->check_ijtype(a, b, threaded))
-        return false;
-  return true;
-}
-
 void PairFSIFluid::set_fields(Discretization &of_run)
 {
-  if (has_all_pairs()) neighbor->add_request(this);    // after init_style()
+  check_pairs();
+  if (hybrid_style()) neighbor->add_request(this);    // after init_style()
   fields.set("density rate", Fields::STEP, disc->density_fluid == Discretization::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, step->shift, nshift());
   fields.set("fade of shifting", Fields::STEP, shifting > 0.0 && disc->has_levels(), fade);

@@ -87,7 +87,8 @@ class PairFSIFluid : public PairFSI {
 
  protected:
   bool handles(int a, int b) const override { return a == FSI::FLUID || b == FSI::FLUID; }
-  bool needs_neighbors() override { return !has_all_pairs(); }
+  // Of a hybrid style it takes LAMMPS' list of all pairs: its own would be copied from that
+  bool needs_neighbors() override { return !hybrid_style(); }
   // walls of held solid particles need no pair style of their own; wall particles act on fluids
   // only
   bool leaves_alone(int a, int b, bool alone) const override
@@ -123,7 +124,6 @@ class PairFSIFluid : public PairFSI {
 
   bool by_preset(const char *keyword) const;    // has the preset set it?
   void check_effects(const FSI::Facts &of_solids) const;
-  bool has_all_pairs() const;
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
   std::vector<double> taken;    // by coupling and friction, if there is a ledger

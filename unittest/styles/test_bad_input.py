@@ -151,6 +151,12 @@ CASES = [
     ("materials all NULL", *coeff("materials.fsi NULL NULL"), r"no pair to act on"),
     ("coefficients of some types", "* * fsi/fluid materials.fsi", "1 1 fsi/fluid materials.fsi",
      r"pair_coeff \* \*"),
+    ("pairs of a fluid for another style", re.compile(r"(style hybrid.*)\n(.*\n.*)\n"),
+     r"\1 zero 0.03\n\2\npair_coeff 1 1 zero\n", r"fsi/fluid requires its pairs of types 1 and 1, "
+     r"which another pair_coeff takes: .* pair_style hybrid/overlay"),
+    ("pairs of fluid and solid for none", "fsi/solid materials.fsi NULL plate",
+     "fsi/solid materials.fsi NULL plate\npair_coeff 1 2 none",
+     r"fsi/fluid requires its pairs of types 1 and 2, which another pair_coeff takes"),
     ("solid pairs left out", "pair_coeff * * fsi/solid", "# pair_coeff",
      r"All pair coeffs are not set"),
     ("atoms without material", HYBRID,

@@ -479,7 +479,7 @@ print "STEPS $(step)"
     assert loops[1:3] == [0, 0] and min(loops[0], loops[3]) > 10 and loops[4] == 20
     assert float(re.search(r"^END (\S+)", done.output, re.M)[1]) == 0.02
     assert len(re.findall(r"WARNING: Fix fsi/dt stop 0.01: the time is 0.01 already, there is "
-                          r"nothing to run", done.output)) == 1
+                          r"nothing to run\. To go on .* unfix dt ", done.output)) == 1
 
 
 def test_a_run_to_a_time_restarts_bit_for_bit(tmp_path):

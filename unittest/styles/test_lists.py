@@ -49,3 +49,32 @@ def test_nothing_depends_on_it(tmp_path, ranks, grid):
     assert np.abs(apart - np.round(apart)).max() < 1e-10  # wrapped round the box at other times
     for quantity in ("v", "rho"):
         assert difference(a, b, quantity) < 1e-10, quantity
+
+
+def test_groups_that_change(tmp_path):
+    """In steps that keep their lists: the gravity of a group in which all are from step 11 on is
+    one that a variable turns on then; a gauge of a group in which all are in odd steps, none in
+    even ones, shows what one of all shows, or 0. With groups as they were when lists were new,
+    velocities differ by 3 %."""
+    gauge = "point 0.1 0.1 0\n"
+    gravity = {
+        "variable": "variable g equal 9.81*(step>10)\nfix g all gravity v_g vector 0 -1 0",
+        "group": "variable late atom step>10\ngroup late dynamic all var late every 1\n"
+                 "fix g late gravity 9.81 vector 0 -1 0"}
+    last = {}
+    for name, lines in gravity.items():
+        text = deck("0 0.3 0 0.3", 0.02, INVISCID, "fix walls all fsi/wall/mirror xlo 0 ylo 0",
+                    lines, "variable odd atom step%2\ngroup odd dynamic all var odd every 1",
+                    f"compute one all fsi/probe p {gauge}compute two odd fsi/probe p {gauge}"
+                    "thermo 1\nthermo_style custom step c_one c_two\n"
+                    "thermo_modify format float %.17g", water="0 0.2 0 0.2",
+                    fluid="sound 20 density/diffusion 0.1", dt=2e-4)
+        done = run(tmp_path / name, text + watch(every=40) + "run 40\n")
+        rows = re.findall(r"^ +(\d+) +(\d\S*) +(\d\S*) *$", done.output, re.M)
+        assert len(rows) == 41 and "Neighbor list builds = 1\n" in done.output
+        assert float(rows[-1][1]) > 10.0
+        for step, of_all, of_odd in rows:
+            assert float(of_odd) == (float(of_all) if int(step) % 2 else 0.0), step
+        last[name] = done.frames()[-1]
+    for quantity in ("x", "v", "rho"):
+        assert difference(last["variable"], last["group"], quantity) < 1e-14, quantity
