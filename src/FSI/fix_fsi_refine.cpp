@@ -522,9 +522,9 @@ void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells 
   }
 }
 
-// Not within the guard of a wall of particles, which would push them with energy out of nothing:
+// Not within the guard of a wall or solid, which would push them with energy out of nothing:
 // both halves are as much farther from it
-void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
+void FixFSIRefine::keep_off_bodies(Division &two, const Cells &cells) const
 {
   const double *const x = atom->x[two.i], fine = disc->dx_of(types[level(two.i) + 1]);
   for (int pass = 0; pass < 2 * PASSES; pass++) {
@@ -537,15 +537,15 @@ void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
 }
 
 // likewise what two become: the guard of the coarser level is wider
-void FixFSIRefine::keep_off_walls(std::vector<Union> &list) const
+void FixFSIRefine::keep_off_bodies(std::vector<Union> &list) const
 {
-  const Cells walls(atom, disc->dim, disc->cut, [&](int j) {
-    return disc->state[atom->type[j]].species == RIGID;
+  const Cells bodies(atom, disc->dim, disc->cut, [&](int j) {
+    return disc->state[atom->type[j]].is_body();
   });
   for (auto &merged : list)
     for (int pass = 0; pass < PASSES; pass++) {
       const double coarse = disc->dx_of(types[level(merged.i) - 1]);
-      const auto away = disc->out_of_guards(atom, walls, coarse, merged.x);
+      const auto away = disc->out_of_guards(atom, bodies, coarse, merged.x);
       for (int d = 0; d < 3; d++) merged.x[d] += away[d];
     }
 }
@@ -571,7 +571,7 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
     const double distance = split_distance(disc->dim) * disc->dx_of(atom->type[i]);
     for (int d = 0; d < 3; d++) two.dx[d] = distance * directions[heading[i] - 1][d];
     disc->dim == 2 ? slopes<2>(two, cells) : slopes<3>(two, cells);
-    keep_off_walls(two, cells);
+    keep_off_bodies(two, cells);
     list.push_back(two);
     const double m = atom->rmass[i];
     double spin[3];
@@ -661,7 +661,7 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
     local[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
     for (int d = 0; d < 3; d++) local[SPIN + d] += reduced * spin[d];
   }
-  if (!list.empty()) keep_off_walls(list);
+  if (!list.empty()) keep_off_bodies(list);
   return list;
 }
 

@@ -109,8 +109,8 @@ class FixFSIRefine : public Fix {
   int choose_direction(int i, const FSI::Cells &) const;
   void choose_directions(const std::vector<int> &which, const FSI::Cells &);
   template <int D> void slopes(Division &, const FSI::Cells &) const;
-  void keep_off_walls(Division &, const FSI::Cells &) const;
-  void keep_off_walls(std::vector<Union> &) const;
+  void keep_off_bodies(Division &, const FSI::Cells &) const;
+  void keep_off_bodies(std::vector<Union> &) const;
   std::vector<Division> plan_divisions();
   void choose_partners();
   int best_partner(int i, const FSI::Cells &) const;

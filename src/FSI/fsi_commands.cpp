@@ -174,7 +174,9 @@ static bigint keep_off_guards(LAMMPS *lmp, const Discretization &disc, const Ste
 {
   constexpr int PASSES = 10;    // the next wall particle may be as near
   Atom *const atom = lmp->atom;
-  const Cells bodies(atom, disc.dim, disc.largest_cut, is_body);
+  const Cells bodies(atom, disc.dim, disc.largest_cut, [&](int j) {
+    return is_body(j) && disc.state[atom->type[j]].species == RIGID;
+  });
   bigint moved = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!stays(i)) continue;

@@ -73,12 +73,14 @@ struct Discretization : Resolution {
   double largest_cut;                    // support of the coarsest
   double dx_of(int type) const { return resolution[type].dx; }
   double h_of(int type) const { return resolution[type].h; }
-  // within which a wall of particles of this type pushes off fluid of that spacing
+  // within which a wall of particles or a solid of this type pushes off fluid of that spacing
   double guard_of(int type, double spacing) const
   {
+    if (state[type].species == SOLID) return solids_guard * 0.5 * (spacing + dx_of(type));
     return state[type].guard * ((spacing + dx_of(type)) / (dx + dx_of(type)));
   }
-  // the way out of the guards around a place, from the wall particles in cells
+  double solids_guard = 0.0;    // in mean spacings
+  // the way out of the guards around a place, of the particles in cells
   std::array<double, 3> out_of_guards(const Atom *, const Cells &, double spacing,
                                       const double *at) const;
   // The spacings of fluids, from the above on, the coarsest; which of them a fluid type has

@@ -274,6 +274,7 @@ void PairFSIFluid::init_style()
                PRESETS[preset - 1].name);
   FixFSI *const fix = FixFSI::find(lmp, style);
   fix->disc.find_levels();
+  fix->disc.solids_guard = couple == WALL ? solids_guard : 0.0;
   if (!disc->has_thin() && !any_is(fixes_of<Part>(lmp), &Facts::segments))
     fix->disc.sight.reset();
   else if (!disc->sight)
@@ -563,9 +564,9 @@ void PairFSIFluid::undo_advance()
 Contact PairFSIFluid::guard_of(int t, double dx) const
 {
   const State &s = disc->state[t];
-  if (s.species != SOLID) return Contact(disc->dim, disc->guard_of(t, dx));
+  Contact guard(disc->dim, disc->guard_of(t, dx));
+  if (s.species != SOLID) return guard;
   const double ratio = disc->dx_of(t) / dx;
-  Contact guard(disc->dim, couple == WALL ? solids_guard * 0.5 * (dx + disc->dx_of(t)) : 0.0);
   guard.scale = disc->dim == 3 ? dx * ratio * ratio : ratio;
   return guard;
 }

@@ -414,19 +414,23 @@ def test_balance_where_pairs_merge_across_the_edge(settle):
         assert after == pytest.approx(before, rel=1e-6)
 
 
-@pytest.mark.parametrize("guard", ["auto", "0"])
+@pytest.mark.parametrize("guard", ["auto", "0", "solid/guard 0.9"])
 @pytest.mark.parametrize("zone", ["comes", "goes"])
 def test_energy_beside_a_wall(guard, zone):
-    """Halves, and what two become, are not within the guard of a wall of particles, which would
-    push them with energy out of nothing: 18 and 30 J of 13 J that this water exchanges."""
+    """Halves, and what two become, are not within the guard of a wall of particles or of a solid,
+    which would push them with energy out of nothing: 18 and 30 J of 13 J that this water
+    exchanges."""
+    solid = guard.startswith("solid")
     fine = 1.2 / 34
     water, bed = lattice((24, 16), DX), lattice((34, 4), fine, origin=np.array([0, -4 * fine]))
     x, type_ = np.concatenate([water, bed]), np.repeat([1, 3], [len(water), len(bed)])
-    with Scene(x, dx=DX, type=type_, held=type_ == 3, materials=(WATER, WATER, "wall rho 1000"),
+    bed = dict(materials=(WATER, WATER, "solid rho 2000 young 1e7 poisson 0.3"), mol=type_,
+               solid_style="fsi/solid/tl") if solid else dict(materials=(WATER, WATER, WALL))
+    with Scene(x, dx=DX, type=type_, held=type_ == 3, **bed,
                density=f"spacing 2 {DX * FINER[2]!r} spacing 3 {fine!r}",
                box=((0, -0.2, 0), (1.2, 1.5, 0)), boundary="p f p", dt=5e-4,
-               fluid="sound 30 density/diffusion 0.1 artificial/visc 0.02 0",
-               commands=(f"fix w held fsi/wall/particle guard {guard}",
+               fluid="sound 30 density/diffusion 0.1 artificial/visc 0.02 0 " + guard * solid,
+               commands=("" if solid else f"fix w held fsi/wall/particle guard {guard}",
                          "fix g moving gravity 9.81 vector 0 -1 0",
                          "fsi/set moving hydrostatic 0.8",
                          f"variable down equal -0.9*(step{'>' if zone == 'comes' else '<='}50)",
