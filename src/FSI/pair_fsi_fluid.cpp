@@ -513,7 +513,7 @@ void PairFSIFluid::react()
 {
   if (members->light_solids->any())
     members->light_solids->react(pairs, particles_at(points.data()), force_computes);
-  if (!ledger->kept || taken.empty()) return;
+  if (!ledger->kept || !force->pair->compute_flag) return;
   disc->dim == 2 ? correct_powers<2>() : correct_powers<3>();
 }
 

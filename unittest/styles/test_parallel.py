@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from decks import box
-from scenes import dam_gate, difference, fluid_box, run, watch
+from decks import box, deck
+from scenes import WATER, dam_gate, difference, fluid_box, lammps, run, watch
 
 
 SCENES = {"fluid_box": fluid_box, "dam_gate": dam_gate}
@@ -319,3 +319,16 @@ velocity moving set 1 0 0
 run 40
 """
     assert bytes_on_every_rank(tmp_path, text) < 20000
+
+
+def test_a_rank_that_has_nothing(tmp_path):
+    """Half of the box is empty and has no ghosts. Tiled ranks wait for each other's empty messages,
+    in the balance of energy, too, so all have to send them."""
+    text = deck("-0.1 0.3 -0.1 0.9", 0.01, {"water": WATER}, "fix g all gravity 9.81 vector 0 -1 0",
+                "fix w all fsi/wall/mirror xlo 0 ylo 0", "compute e all fsi/energy",
+                "thermo_style custom step c_e", "run 10", 'print "ENERGY $(c_e:%.17g)"',
+                water="0 0.2 0 0.1", before=("comm_style tiled", "processors 1 * *"),
+                fluid="sound 10 artificial/visc 0.05 0")
+    one, two = (float(re.search(r"^ENERGY (.*)$", lammps(tmp_path, text, ranks, timeout=60).output,
+                                re.M)[1]) for ranks in (1, 2))
+    assert one > 1.0 and abs(two / one - 1.0) < 1e-13
