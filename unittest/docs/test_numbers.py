@@ -229,8 +229,6 @@ QUOTED = [
         100 * (a / reference("turek_hron_fsi", "uy_amplitude_fsi2_2") - 1.0)
         for a in sound("turek_hron_fsi", "uy_amplitude")[::-1]] +
         run_of("turek_hron_fsi", "sound speed over the largest inflow = 20")),
-    ("doc/src/fix_fsi_wall_particle.rst", "scatters by {} % instead of {} %",
-     lambda: figures("wedge_entry", "force_scatter_30_25", "force_scatter_30_25_lattice")),
     ("README.md", "drag is {} % and lift {} % off",
      lambda: figures("cylinder_free", "drag_re_200", "lift_re_200")),
     ("doc/src/Howto_peers.rst",
