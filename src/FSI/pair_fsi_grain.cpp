@@ -154,7 +154,7 @@ void PairFSIGrain::find_idle(const Census &, const Idle &nothing) const
         return atom->type[i] == t && atom->radius[i] == 0.0;
       });
       if (points.count)
-        nothing(fmt::format("Contact of grains with atom type {}", t),
+        nothing(fmt::format("Contact of grains with type {}", t),
                 fmt::format("{} of its particles have no diameter: set type {} diameter",
                             points.count, t));
     }

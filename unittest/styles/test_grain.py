@@ -320,7 +320,7 @@ def test_walls_of_points_bear_no_grain(tmp_path, diameter):
             "group grains type 2", "group wall type 2").replace("fix sph all", "fix sph water")
     text += f"fix walls wall fsi/wall/particle\n{diameter}\nrun 0\n"
     done = run(tmp_path, text, test_fsi=FILE + "wall wall rho 1000\n")
-    warning = ("Contact of grains with atom type 2 has nothing to act on: 1 of its particles have "
+    warning = ("Contact of grains with type 2 has nothing to act on: 1 of its particles have "
                "no diameter: set type 2 diameter")
     assert (warning in done.output) == (not diameter)
 
