@@ -533,16 +533,19 @@ def buoy(height, width=8):
     return x, kind
 
 
-def test_archimedes(tmp_path):
-    """The force on a body held under water is the weight of the water that it displaces (2 %: a
-    spacing has 12 % of it)."""
-    x, kind = buoy(6)
-    text = deck(names="water wall buoy", dt=1.5e-4, more=f"""group body type 3
+IN_A_TANK = """group body type 3
 group tank type 2
 unfix walls
 fix walls tank fsi/wall/particle
 fix body body fsi/wall/particle
-fsi/set water hydrostatic {20 * DX}
+"""
+
+
+def test_archimedes(tmp_path):
+    """The force on a body held under water is the weight of the water that it displaces (2 %: a
+    spacing has 12 % of it)."""
+    x, kind = buoy(6)
+    text = deck(names="water wall buoy", dt=1.5e-4, more=IN_A_TANK + f"""fsi/set water hydrostatic {20 * DX}
 variable fx equal f_body[1]
 variable fy equal f_body[2]
 fix mean all ave/time 10 200 2000 v_fx v_fy
@@ -570,12 +573,7 @@ def test_rigid_body_floats(tmp_path):
     body[:, 0] += 0.15 - width / 2 * DX
     body[:, 1] += low * DX - 0.4 * DX
     x, kind = np.concatenate([x[keep], body]), np.concatenate([kind[keep], np.full(len(body), 3)])
-    text = deck(names="water wall buoy", dt=1.5e-4, more=f"""group body type 3
-group tank type 2
-unfix walls
-fix walls tank fsi/wall/particle
-fix body body fsi/wall/particle
-fix g2 body gravity {G} vector 0 -1 0
+    text = deck(names="water wall buoy", dt=1.5e-4, more=IN_A_TANK + f"""fix g2 body gravity {G} vector 0 -1 0
 run 0
 print "BEFORE $(mass(body))"
 fsi/set all hydrostatic {16 * DX}
@@ -609,12 +607,7 @@ def test_a_float_of_foam_rises(tmp_path):
     acceleration of the last step: without the mean of steps it rose three times as far, with an
     error of 1.6 %."""
     x, kind = buoy(6)
-    text = deck(names="water wall foam", dt=2e-4, more=f"""group body type 3
-group tank type 2
-unfix walls
-fix walls tank fsi/wall/particle
-fix body body fsi/wall/particle
-fix g2 body gravity {G} vector 0 -1 0
+    text = deck(names="water wall foam", dt=2e-4, more=IN_A_TANK + f"""fix g2 body gravity {G} vector 0 -1 0
 fsi/set water hydrostatic {20 * DX}
 fix rigid body rigid single force * on on off torque * off off on
 compute e all fsi/energy

@@ -591,9 +591,7 @@ def test_animation_says_what_the_dump_lacks(tmp_path):
         cli.main(["animate", str(path)])
 
 
-def test_files_of_fix_ave_time_and_print(tmp_path):
-    """As LAMMPS itself writes them, in both modes; a cut-off end is left out."""
-    run(tmp_path, """units lj
+LATTICE = """units lj
 region box block 0 4 0 4 0 4
 lattice sc 1
 create_box 1 box
@@ -602,7 +600,12 @@ mass 1 1
 pair_style zero 1
 pair_coeff * *
 fix 1 all nve
-velocity all set 1 2 0
+"""
+
+
+def test_files_of_fix_ave_time_and_print(tmp_path):
+    """As LAMMPS itself writes them, in both modes; a cut-off end is left out."""
+    run(tmp_path, LATTICE + """velocity all set 1 2 0
 compute v all reduce sum vx vy
 variable t equal step*dt
 fix a all ave/time 1 2 4 c_v[1] v_t file scalar.ave
@@ -629,16 +632,7 @@ run 8
 def test_files_that_runs_go_on_with(tmp_path):
     """LAMMPS writes the titles again where a continued run appends; rows beyond its start are of
     the run that was given up."""
-    deck = """units lj
-region box block 0 4 0 4 0 4
-lattice sc 1
-create_box 1 box
-create_atoms 1 box
-mass 1 1
-pair_style zero 1
-pair_coeff * *
-fix 1 all nve
-velocity all set {v} 2 0
+    deck = LATTICE + """velocity all set {v} 2 0
 compute v all reduce sum vx vy
 reset_timestep {start}
 variable v equal c_v[1]/64
@@ -663,16 +657,7 @@ run {n}
 
 def test_runs_without_a_new_setup(tmp_path):
     """`pre no` leaves out the line of memory before the table, `post no` LAMMPS' times after it."""
-    run(tmp_path, """units lj
-region box block 0 4 0 4 0 4
-lattice sc 1
-create_box 1 box
-create_atoms 1 box
-mass 1 1
-pair_style zero 1
-pair_coeff * *
-fix 1 all nve
-variable t equal step*2
+    run(tmp_path, LATTICE + """variable t equal step*2
 thermo 2
 thermo_style custom step v_t
 run 4
