@@ -21,6 +21,11 @@ WORD = re.compile(r"""(?<![^\s"'])[^\s"']+""")
 RUN = re.compile(r"^([ \t]*)run[ \t]+(\S+)(?:[^\n]*&[ \t]*\n)*[^\n]*$", re.M)
 BODIES, FEW = "fsi_check.bodies", 6  # a dump of them; how many are listed
 SAMPLE = 40  # steps of each run, of which the estimate is made
+# a deck may loop until a step that no run reaches
+MOST = 50
+FIRST = 'if "!$(is_defined(variable,fsi_runs))" then "variable fsi_runs equal 0"\n'
+COUNT = "variable fsi_runs equal $(v_fsi_runs+1)"
+STOP = f"if $(v_fsi_runs)>{MOST} then quit"
 CONDITIONAL_RUN = re.compile(r"""(["'])run[ \t][^"'\n]*(?=\1)""")
 
 
@@ -103,12 +108,14 @@ def spelled_out(text):
 
 def shortened(text, steps=0):
     """A deck's text in which every run computes so few steps; how long it would have been is
-    printed, and the time step at its end. Without a step bodies are dumped."""
+    printed, and the time step at its end. Without a step bodies are dumped. It ends after MOST
+    runs."""
     text = spelled_out(text)
-    text = CONDITIONAL_RUN.sub(rf"\1run {steps}", text)
+    text = CONDITIONAL_RUN.sub(rf"\1{COUNT}\1 \1{STOP}\1 \1run {steps}", text)
     after = ('\n{0}print "FSI dt $(dt)"' if steps else "\n{0}write_dump all custom " + BODIES
              + " id type mol x y z modify time yes thresh mol > 0")
     return RUN.sub(lambda m: f'{m[1]}print "FSI steps {m[2]}"\n'
+                   f"{m[1]}{COUNT}\n{m[1]}{STOP}\n"
                    f'{m[1]}run {"0" if m[2] == "0" else steps}' + after.format(m[1]), text)
 
 
@@ -131,7 +138,7 @@ def run(deck, variables, steps=0, look=None):
             if file in decks:
                 text = kept_below(name, place, file.read_text(errors="replace"),
                                   {**deck_variables(file), **variables})
-                target.write_text(shortened(text, steps))
+                target.write_text(FIRST * (file == deck) + shortened(text, steps))
             else:
                 shutil.copyfile(file, target)
         command = [lammps(), "-in",
@@ -245,6 +252,9 @@ def main(deck, variables):
         return 1
     if made_of:
         print(*made_of, sep="\n")
+    if len(ran) >= MOST:
+        print(f"fsi check: only the first {MOST} runs: a loop goes on until a step or time that "
+              "these do not reach, or is long")
     print(cost(deck, variables), end="")
     print(f"fsi check: {ran[0].atoms} particles{length(lines, found)}; "
           + (f"{len(advice)} warning{'s' * (len(advice) > 1)}" if advice else "nothing to warn of")

@@ -117,6 +117,17 @@ def test_bodies_are_measured(folder, capsys):
     assert text.count("spacings of 0.01") == 6 and "fsi check: and 1 more\n" in text
 
 
+@pytest.mark.parametrize("loop", ['run 100\nif "$(step) < 1000" then "jump SELF again"',
+                                  'if "$(step) < 1000" then "run 100" "jump SELF again"'])
+def test_loop_until_a_step(folder, capsys, loop):
+    """A loop ends, though no run reaches its last step; what comes later is looked at while there
+    are runs left."""
+    (folder / "in.deck").write_text(DECK.replace('if "${n} > 5" then', f"label again\n{loop}\nif"
+                                                 ' "${n} > 5" then'))
+    status, text = says(capsys)
+    assert status == 0 and f"only the first {check.MOST} runs" in text
+
+
 def test_no_step_is_computed(folder):
     status, output, *_ = check.run("in.deck", {})
     assert status == 0 and "steps done: 0" in output
