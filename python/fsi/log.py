@@ -24,6 +24,10 @@ _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
 _REPORT = re.compile(r"^FSI report (\w+) (.+)$")  # of fix fsi/report
 _VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
+# of thermo styles that are not lines of numbers
+_YAML = re.compile(r"(?:keywords:|  -) \[(.*)\]$")
+_STEP = re.compile(r"-{12} Step +(\d+) -{5} CPU = +(\S+) \(sec\) -+$")
+_EQUAL = re.compile(r"(\S+) += +(\S+)")
 
 
 @dataclass
@@ -107,7 +111,7 @@ class Log:
 
 
 def read(path):
-    """Reads a log file in thermo style `one` (or `custom`)."""
+    """Reads a log file, of any thermo style."""
     log = Log(runs=[], values={}, warnings=[], errors=[])
     header, rows = None, []
 
@@ -117,7 +121,7 @@ def read(path):
             log.runs[-1].thermo = {name: table[:, k] for k, name in enumerate(header)}
 
     expect_header = False
-    lines, starts, ended = Path(path).read_text(errors="replace").splitlines(), [], 0
+    lines, starts, ended = _in_lines(Path(path).read_text(errors="replace").splitlines()), [], 0
     for k, line in enumerate(lines):
         match = _LOOP.match(line) or _REPORT.match(line)
         if match and log.runs and log.runs[-1].loop_seconds is not None:
@@ -175,6 +179,29 @@ def read(path):
     close_table()
     _blocks(log, lines, starts)
     return log
+
+
+def _in_lines(lines):
+    """A log whose thermo output, of style yaml or multi, stands in lines of names and of numbers"""
+    result, row, columns = [], None, None
+    for line in lines:
+        if row and not _EQUAL.match(line):  # the end of what style multi writes for a step
+            if columns != list(row):
+                columns = list(row)
+                result.append(" ".join(columns))
+            result.append(" ".join(row.values()))
+            row = None
+        if _LOOP.match(line):
+            columns = None
+        if match := _STEP.match(line):
+            row = {"Step": match[1], "CPU": match[2]}
+        elif row:
+            row.update(_EQUAL.findall(line))
+        elif match := _YAML.match(line):
+            result.append(re.sub("[',]", " ", match[1]))
+        elif line not in ("---", "data:", "..."):
+            result.append(line)
+    return result
 
 
 def _header(lines, first, last):

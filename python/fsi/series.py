@@ -3,6 +3,7 @@
 A deck writes one with `fix print ... file tip.csv title "time,tip_x" screen no`.
 """
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,6 +47,9 @@ def read(path):
     if len(lines) < 2:
         raise ValueError(f"{path} has no rows")
     names = [name.strip() for name in lines[0].split(",")]
+    if re.fullmatch(r"[-+.\deE, ]+", lines[0]):
+        raise ValueError(f"{path} begins with numbers: expected names of columns, as fix print "
+                         "writes them with its keyword title")
     parts = [[]]
     for line in lines[1:]:
         if line.endswith(lines[0]):  # perhaps behind a line that was cut off

@@ -673,6 +673,26 @@ run 2 pre no
     np.testing.assert_array_equal(found.column("v_t"), np.multiply(2, steps))
 
 
+def test_series_without_titles(tmp_path):
+    (tmp_path / "print.csv").write_text("# of fix print\n0,1.5\n1e-3,-2\n2e-3,3\n")
+    with pytest.raises(ValueError, match="begins with numbers: expected names of columns"):
+        series.read(tmp_path / "print.csv")
+
+
+@pytest.mark.parametrize("style", ["", "thermo_modify line multi", "thermo_modify line yaml"])
+def test_thermo_styles(tmp_path, style):
+    run(tmp_path, LATTICE + f"""variable t equal step*2
+thermo 2
+thermo_style custom step v_t
+{style}
+run 4
+run 2 pre no
+""")
+    found = log.read(tmp_path / "log.lammps")
+    np.testing.assert_array_equal(found.column("v_t"), [0, 4, 8, 8, 12])
+    assert found.runs[0].thermo.keys() - {"CPU"} == {"Step", "v_t"}
+
+
 @pytest.mark.parametrize("cut", (0.95, 0.7, 0.52))
 @pytest.mark.parametrize("name", ("some.dump", "some.dump.gz"))
 def test_dump_that_is_cut_off(tmp_path, frames, capsys, name, cut):
