@@ -31,5 +31,6 @@ endif()
 
 find_program(FSI_CCACHE ccache)
 if(FSI_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${FSI_CCACHE}" CACHE STRING "")
+  # with headers that are compiled once it must be told that macros and times in them do not matter
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${FSI_CCACHE}" CACHE STRING "")
 endif()

@@ -27,11 +27,12 @@ if(NOT CMAKE_INSTALL_RPATH)
   set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 endif()
 add_subdirectory("${LAMMPS_SOURCE_DIR}/cmake" lammps)
+include(PrecompiledHeaders)
 
+target_include_directories(lammps PRIVATE ${FSI_SOURCE_DIRS})    # in it or not: the compiler cache then knows its objects
 fsi_compile_as_lammps(fsi)
 if(FSI_COMPILED_IN)
   target_sources(lammps PRIVATE $<TARGET_OBJECTS:fsi>)
-  target_include_directories(lammps PRIVATE ${FSI_SOURCE_DIRS})
   target_link_libraries(lammps PRIVATE ${FSI_FFTW} ${OpenMP_CXX_LIBRARIES})
 endif()
 if(FSI_COVERAGE)
