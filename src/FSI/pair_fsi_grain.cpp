@@ -39,10 +39,10 @@ using namespace FSI;
 using MathConst::MY_PI;
 
 // Sums of V W times what the fluid has, x_ji over h: of one; of places; their moments, packed; of
-// velocities; density, viscosity, pressure; and of pressure times places
+// velocities; density, viscosity, pressure; of pressure times places; and of (h_j/h)^2
 template <int D> struct Sums {
-  enum { ONE, X, XX = X + D, V = XX + packed_size(D), RHO = V + D, ETA, P, PX };
-  static constexpr int N = PX + D;
+  enum { ONE, X, XX = X + D, V = XX + packed_size(D), RHO = V + D, ETA, P, PX, HH = PX + D };
+  static constexpr int N = HH + 1;
 };
 
 PairFSIGrain::PairFSIGrain(LAMMPS *lmp) : Pair(lmp), least_floor(0.0)
@@ -199,8 +199,8 @@ void PairFSIGrain::find_grains()
   given.assign(grains.size() * dim, 0.0);
 }
 
-// Over the pairs of the neighbor list, in which either may be the grain, as far as no thin body or
-// segment of a mirror wall is between them
+// Over the pairs of the neighbor list, in which either may be the grain, with the fluid's kernel, as
+// far as no thin body or segment of a mirror wall is between them
 template <int D> void PairFSIGrain::sum_up()
 {
   const ChosenKernel kernel(disc->kernel, D, disc->h);
@@ -209,6 +209,8 @@ template <int D> void PairFSIGrain::sum_up()
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const type = atom->type;
   Sight *const sight = disc->sight.get();
+  std::vector<double> finer;    // h over that of a type
+  for (const Resolution &of : disc->resolution) finer.push_back(of.h > 0.0 ? disc->h / of.h : 1.0);
   touches.clear();
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
@@ -219,9 +221,11 @@ template <int D> void PairFSIGrain::sum_up()
     if (looks) sight->look_from(atom->x[i], kernel.cut);
     for_near(row, atom->x, D, kernel.cutsq, [&](int j, const double *d, double rsq) {
       const int g = grain_first ? i : j, f = grain_first ? j : i;
+      const double fine = finer[type[f]], r = fine * std::sqrt(rsq);
+      if (r >= kernel.cut) return;
       const double part = looks ? sight->visible(atom->x[j], kernel.cut) : 1.0;
       if (part == 0.0) return;
-      const double w = part * rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)),
+      const double w = part * rmass[f] / rho[f] * (D == 3 ? fine : 1.0) * fine * fine * kernel.W(r),
                    p = w * pressure_of(f, atom, *disc, *step);
       touches.push_back({f, g, w});
       double *const sum = &sums[(size_t) number[g] * Of::N];
@@ -229,6 +233,7 @@ template <int D> void PairFSIGrain::sum_up()
       sum[Of::RHO] += w * rho[f];
       sum[Of::ETA] += w * disc->state[type[f]].viscosity;
       sum[Of::P] += p;
+      sum[Of::HH] += w / (fine * fine);
       double *moment = sum + Of::XX, x[D];
       for (int a = 0; a < D; a++) {
         x[a] = per_h * d[a];
@@ -263,7 +268,7 @@ template <int D> void PairFSIGrain::forces()
     for (int a = 0, n = 0; a < D; a++)
       for (int b = 0; b <= a; b++, n++)
         moments[n] = sum[Of::XX + n] - per * sum[Of::X + a] * sum[Of::X + b];
-    faded_inverse<D>(moments, C, WIDE * sum[Of::ONE]);
+    faded_inverse<D>(moments, C, WIDE * sum[Of::HH]);
     for (int a = 0; a < D; a++) {
       for (int b = 0; b < D; b++) slope[a] += C[a * D + b] * (sum[Of::PX + b] - p * sum[Of::X + b]);
       steepness += slope[a] * slope[a];
