@@ -236,7 +236,7 @@ def test_archimedes(tmp_path, dim):
 
 def test_water_of_two_spacings(tmp_path):
     """In the finer water, away from the other, forces are those of that water alone: they have its
-    kernel. Exact but for the order of sums; with the coarser one's kernel 7 % differ."""
+    kernel. Exact but for the order of sums; with the coarser one's kernel 89 % differ."""
     (tmp_path / "test.fsi").write_text(FILE)
     found = []
     for dx, coarse in ((2 * DX, "create_atoms 1 region coarse"), (DX, "")):
