@@ -335,10 +335,10 @@ void FixFSI::final_integrate()
   if (step.walls.any()) step.walls = step.walls.moved(0.5 * update->dt);    // for computes
 }
 
-// A restart file could not be read with particles out of the box, where the second drift takes them
+// The second drift may take particles out of the box, and a restart file could not be read: a
+// shrink-wrapped box goes along, and what leaves a fixed one does so with the next drift
 void FixFSI::end_of_step()
 {
-  for (auto *p : parts) p->end_step();
   if (update->ntimestep != output->next_restart || domain->nonperiodic == 0) return;
   domain->reset_box();
   if (step.device) step.device->to_host();

@@ -348,7 +348,8 @@ void FixFSIWallParticle::sum_up()
 void FixFSIWallParticle::find_floats()
 {
   static constexpr double LIGHT = 0.5;    // over the fluid's density
-  floats = rigid_groups(lmp);
+  floats = 0;
+  for (const auto &fix : modify->get_fix_by_style("^rigid")) floats |= fix->groupbit;
   of_newest.clear();
   for (const State &s : disc->state)
     of_newest.push_back(std::min(1.0, s.rho0 / (LIGHT * fluid_density)));

@@ -125,7 +125,8 @@ Census::Census(LAMMPS *lmp, const Discretization &disc, const StepState &step,
     substeps(step.substeps), fluids(facts_of_fluids(lmp)), solids(facts_of_solids(lmp)),
     present(atom->ntypes + 1)
 {
-  const int rigid = rigid_groups(lmp);
+  int rigid = 0;
+  for (const auto &fix : modify->get_fix_by_style("^rigid")) rigid |= fix->groupbit;
   const bool streams = fluids.style && std::any_of(parts.begin(), parts.end(), [](const Part *p) {
                          return p->rank() == Part::STREAMS || p->rank() == Part::OPEN_ENDS;
                        });

@@ -57,14 +57,6 @@ template <class T> std::vector<T *> pairs_of(const LAMMPS *lmp)
   return found;
 }
 
-// bits of the groups that fixes rigid move
-inline int rigid_groups(const LAMMPS *lmp)
-{
-  int bits = 0;
-  for (const auto &fix : lmp->modify->get_fix_by_style("^rigid")) bits |= fix->groupbit;
-  return bits;
-}
-
 template <class T> T *first_of(const std::vector<T *> &found)
 {
   return found.empty() ? nullptr : found[0];

@@ -109,8 +109,7 @@ class Part {
   // when all forces are there: those that bring velocities to what is given
   virtual void prescribe() {}
   virtual void integrate_substeps() {}    // what takes shorter steps than the kick of all
-  virtual void react() {}       // to what bodies have done in this step, before the kick of all
-  virtual void end_step() {}    // when all fixes have moved what they move
+  virtual void react() {}    // to what bodies have done in this step, before the kick of all
 
   // from the middle of a step to its start, a state to go on from that a run which stops leaves:
   // what advance() did, if it was called; what moves

@@ -18,6 +18,7 @@
 #include "compute_fsi_force.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_move.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_fields.h"
@@ -505,16 +506,13 @@ void PairFSIFluid::integrate_substeps()
     members->light_solids->find_impedances(pairs, particles_at(points.data()));
 }
 
+// The ledger's powers have velocities of the start of the step. With those of its middle, which are
+// known now, they are second order in time: of what waits for its kick by its force, of what has
+// moved since, in sub-steps or with a rigid body, by the way it went.
 void PairFSIFluid::react()
 {
   if (members->light_solids->any())
     members->light_solids->react(pairs, particles_at(points.data()), force_computes);
-}
-
-// The ledger's powers have velocities of when forces were found, mostly of the start of the step.
-// With those of its middle, which are known now, they are second order in time.
-void PairFSIFluid::end_step()
-{
   if (!ledger->kept || !force->pair->compute_flag) return;
   disc->dim == 2 ? correct_powers<2>() : correct_powers<3>();
 }
@@ -522,15 +520,19 @@ void PairFSIFluid::end_step()
 template <int D> void PairFSIFluid::correct_powers()
 {
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
-  const int moving = disc->mover->groupbit, floats = rigid_groups(lmp);
   const double dt = update->dt, half = 0.5 * dt * force->ftm2v;
   const auto *const point = reinterpret_cast<const Point<D> *>(points.data());
+  const auto movers = fixes_of<FixFSIMove>(lmp);    // move walls after this
+  double next[3];
   const auto change = [&](int i, int d) {
-    if (atom->mask[i] & floats) return 0.0;    // have had it since fix rigid moved them
-    if (!(atom->mask[i] & moving)) return 0.5 * (atom->v[i][d] - point[i].v[d]);
-    if (disc->state[type[i]].species == SOLID && step->substeps > 1)
-      return (atom->x[i][d] - point[i].x[d]) / dt - 0.5 * point[i].v[d];
-    return half * atom->f[i][d] / atom->rmass[i];
+    for (const auto *mover : movers)
+      if ((atom->mask[i] & mover->groupbit) && mover->velocity_at_end(i, next))
+        return 0.5 * (next[d] - atom->v[i][d]);
+    const bool waits = disc->state[type[i]].species == FLUID || step->substeps == 1;
+    if (waits && (atom->mask[i] & disc->mover->groupbit))
+      return half * atom->f[i][d] / atom->rmass[i];
+    const double way = atom->x[i][d] - point[i].x[d];
+    return way == 0.0 ? 0.0 : way / dt - 0.5 * point[i].v[d];
   };
   std::vector<double> one(nall);
   for (const auto term : {Ledger::COUPLING, Ledger::ARTIFICIAL, Ledger::WALLS}) {

@@ -73,7 +73,6 @@ class PairFSIFluid : public PairFSI {
   void prescribe() override;
   void integrate_substeps() override;
   void react() override;
-  void end_step() override;
   void undo_advance() override;
   // velocity gradients of local fluid particles as they are now
   const FSI::Shear &find_shear();

@@ -308,7 +308,7 @@ void PairFSIFluidKokkos::run_forces(const K &kernel, double *sums, int nsums)
 }
 
 // the ledger's corrections are found on the host, from what forces have read and left
-void PairFSIFluidKokkos::end_step()
+void PairFSIFluidKokkos::react()
 {
   if (!ledger->kept) return;
   step->device->to_host();
@@ -321,7 +321,7 @@ void PairFSIFluidKokkos::end_step()
   to_host(kk->friction, friction.size(), friction.data());
   taken.assign((size_t) width * nall, 0.0);
   for (int i = 0; i < nlocal; i++) std::copy_n(&friction[dim * i], dim, &taken[width * i + dim]);
-  PairFSIFluid::end_step();
+  PairFSIFluid::react();
 }
 
 void PairFSIFluidKokkos::undo_advance()

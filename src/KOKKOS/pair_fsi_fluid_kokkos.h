@@ -43,7 +43,7 @@ class PairFSIFluidKokkos : public PairFSIFluid {
   void begin_state(bool) override;
   bool add_rates(bool) override;
   void advance(bool) override;
-  void end_step() override;
+  void react() override;
   void undo_advance() override;
   double memory_usage() override;
 
