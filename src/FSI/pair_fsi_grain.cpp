@@ -199,8 +199,8 @@ void PairFSIGrain::find_grains()
   given.assign(grains.size() * dim, 0.0);
 }
 
-// Over the pairs of the neighbor list, in which either may be the grain, with the fluid's kernel, as
-// far as no thin body or segment of a mirror wall is between them
+// Over the pairs of the neighbor list, in which either may be the grain, with the fluid's kernel,
+// as far as no thin body or segment of a mirror wall is between them
 template <int D> void PairFSIGrain::sum_up()
 {
   const ChosenKernel kernel(disc->kernel, D, disc->h);
