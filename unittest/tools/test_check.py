@@ -120,8 +120,7 @@ def test_bodies_are_measured(folder, capsys):
 @pytest.mark.parametrize("loop", ['run 100\nif "$(step) < 1000" then "jump SELF again"',
                                   'if "$(step) < 1000" then "run 100" "jump SELF again"'])
 def test_loop_until_a_step(folder, capsys, loop):
-    """A loop ends, though no run reaches its last step; what comes later is looked at while there
-    are runs left."""
+    """It ends, though no run reaches that step."""
     (folder / "in.deck").write_text(DECK.replace('if "${n} > 5" then', f"label again\n{loop}\nif"
                                                  ' "${n} > 5" then'))
     status, text = says(capsys)
